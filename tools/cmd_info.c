@@ -156,7 +156,7 @@ static int print_scene(app *a, const info_args *args)
         info_grids_read(args->scene.scene, isnan(args->scene.frame) ? NULL : &frame);
     int code = scene_open(a, &args->scene, &scene);
     if (code != EXIT_DONE) {
-        if (info_grids_of_file(args->scene.scene, grids)) {
+        if (info_grids_wanted(args->scene.scene, grids)) {
             print_grids(args, grids, a);
         }
         info_grids_free(grids);

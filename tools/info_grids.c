@@ -66,9 +66,18 @@ void info_grids_free(info_grids *all)
     free(all);
 }
 
-bool info_grids_of_file(const char *scene, const info_grids *all)
+bool info_grids_wanted(const char *scene, const info_grids *all)
 {
-    return all && !all->failed && is_volume(scene);
+    bool numbers = false;
+    if (!all || all->failed || !is_volume(scene) || !all->num_files) {
+        return false;
+    }
+    for (uint32_t i = 0; i < all->files[0].count; i++) {
+        const tyn_volume_grid *g = &all->files[0].grids[i];
+        const bool vector = strncmp(g->type, "vec", 3) == 0;
+        numbers = numbers || (g->has_range && !vector && strcmp(g->grid_class, "level set") != 0);
+    }
+    return numbers;
 }
 
 bool info_grids_failed(const info_grids *all)

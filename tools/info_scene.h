@@ -8,7 +8,8 @@
 typedef struct info_grids info_grids;
 info_grids *info_grids_read(const char *scene, const uint32_t *frame);
 bool info_grids_failed(const info_grids *grids); // a file is damaged, or not there
-bool info_grids_of_file(const char *scene, const info_grids *grids); // ... and the scene is one
+// Is the list of use where no scene can be made? Of a volume file with sound grids of numbers, none of which is a density.
+bool info_grids_wanted(const char *scene, const info_grids *grids);
 void info_grids_print(const info_grids *grids);
 void info_grids_json(const info_grids *grids, cJSON *root); // "files": [{"path", "grids": [...]}]
 void info_grids_free(info_grids *grids);

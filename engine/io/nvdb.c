@@ -569,6 +569,10 @@ static void find_range(tyn_volume_grid *g, const tyn_grid_job *job)
     const size_t count = (size_t)n[0] * n[1] * n[2] * job->channels;
     for (size_t i = 0; i < count; i++) {
         const float v = job->volume.data[i];
+        if (!(v - v == 0)) { // not finite
+            g->has_range = false;
+            return;
+        }
         g->least = !g->has_range || v < g->least ? v : g->least;
         g->most = !g->has_range || v > g->most ? v : g->most;
         g->has_range = true;

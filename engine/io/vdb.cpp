@@ -102,19 +102,19 @@ tyn_result copy_grid(tyn_grid_job *job, const grid_type &grid, const char *path)
 
 // ---- what is in a file ------------------------------------------------------------------------
 
-void widen(tyn_volume_grid *g, double v)
+void widen(tyn_volume_grid *g, bool *finite, double v)
 {
-    if (std::isfinite(v)) {
-        g->least = g->has_range ? std::min(g->least, v) : v;
-        g->most = g->has_range ? std::max(g->most, v) : v;
-        g->has_range = true;
-    }
+    g->least = g->has_range ? std::min(g->least, v) : v; // NaN and infinity: find_range
+    g->most = g->has_range ? std::max(g->most, v) : v;
+    g->has_range = true;
+    *finite = *finite && std::isfinite(v);
 }
 
-template <typename number> void widen(tyn_volume_grid *g, const openvdb::math::Vec3<number> &v)
+template <typename number>
+void widen(tyn_volume_grid *g, bool *finite, const openvdb::math::Vec3<number> &v)
 {
     for (int c = 0; c < 3; c++) {
-        widen(g, double(v[c]));
+        widen(g, finite, double(v[c]));
     }
 }
 
@@ -123,9 +123,11 @@ template <typename grid_type> bool find_range(tyn_volume_grid *g, const openvdb:
 {
     const grid_type *grid = dynamic_cast<const grid_type *>(&base);
     if (grid) {
+        bool finite = true;
         for (typename grid_type::ValueOnCIter it = grid->cbeginValueOn(); it; ++it) {
-            widen(g, it.getValue());
+            widen(g, &finite, it.getValue());
         }
+        g->has_range = g->has_range && finite;
     }
     return grid != nullptr;
 }

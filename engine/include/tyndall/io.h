@@ -52,17 +52,18 @@ TYN_API void tyn_volume_finish(tyn_volume *volume);
 
 // A grid of a volume file, as it is listed.
 typedef struct tyn_volume_grid {
-    char name[128];         // cut where it is longer
-    char type[24];          // "float", "vec3s", ...: as the format calls it
-    char grid_class[24];    // "fog volume", "level set", "staggered", "unknown", ...
-    uint64_t active_voxels; // 0: none, and no box
-    int32_t lo[3], hi[3];   // box of the active voxels in the file's index space, inclusive
+    char name[128];            // cut where it is longer
+    char type[24];             // "float", "vec3s", ...: as the format calls it
+    char grid_class[24];       // "fog volume", "level set", "staggered", "unknown", ...
+    uint64_t active_voxels;    // 0: none, and no box
+    int32_t lo[3], hi[3];      // box of the active voxels in the file's index space, inclusive
     double index_to_world[16]; // column-major; index (i, j, k) is the centre of a voxel
     double voxel[3];           // its edges, in units of the file's world
     double world_lo[3], world_hi[3]; // box around the outer corners of those voxels
-    bool affine;                     // else the transform is a frustum, and the last four are not known
+    bool affine; // else the transform is a frustum, and the last four are not known
     // Least and largest value; of vectors, of any component. OpenVDB: of active voxels. NanoVDB: of all in the box.
-    bool has_range; // of floats, doubles, integers and vectors of them (NanoVDB: of what can be read)
+    bool
+        has_range; // false if a value is not finite; else of floats, doubles, integers and vectors of them (NanoVDB: of what can be read)
     double least, most;
 } tyn_volume_grid;
 
