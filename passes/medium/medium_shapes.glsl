@@ -65,6 +65,14 @@ bool shape_contains(shape_block s, vec3 local, vec3 local_half)
                                         : dot(farthest, farthest) <= 0.25;
 }
 
+// Texels of a grid along a voxel, at least 1 and at most `most`.
+int shape_texels(shape_block s, uvec3 size, int most)
+{
+    vec3 texels = vec3(size) * vec3(length(s.rows[0].xyz * medium.voxel), length(s.rows[1].xyz * medium.voxel),
+                                    length(s.rows[2].xyz * medium.voxel));
+    return clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, most);
+}
+
 // Mean over the voxel around p of the texture value, 0 outside the shape. `samples` per axis where the
 // voxel is on the shape's edge; inside, as many as it has texels.
 float shape_mean(shape_block s, vec3 p, int samples)
@@ -75,13 +83,7 @@ float shape_mean(shape_block s, vec3 p, int samples)
         return 0.0;
     }
     bool inside = shape_contains(s, centre, local_half);
-    int n = samples;
-    if (inside) {
-        vec3 texels = vec3(s.size) * vec3(length(s.rows[0].xyz * medium.voxel),
-                                          length(s.rows[1].xyz * medium.voxel),
-                                          length(s.rows[2].xyz * medium.voxel));
-        n = clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, samples);
-    }
+    int n = inside ? shape_texels(s, s.size, samples) : samples;
     vec3 half_box = 0.5 * medium.voxel / float(n);
     vec3 sub_half = local_half / float(n);
     // Steps between samples are linear in local coordinates.
@@ -132,6 +134,10 @@ mat3 shape_means(shape_block s, vec3 p, int samples)
         return sum;
     }
     bool inside = shape_contains(s, centre, local_half);
+    if (inside) { // of the finest grid
+        uvec3 finest = max(max(s.size, s.colors[0].size), max(s.colors[1].size, s.colors[2].size));
+        samples = shape_texels(s, finest, samples);
+    }
     vec3 half_box = 0.5 * medium.voxel / float(samples);
     mat3 to_local = mat3(s.rows[0].xyz, s.rows[1].xyz, s.rows[2].xyz);
     for (int i = 0; i < samples * samples * samples; i++) {
