@@ -5,6 +5,7 @@
 #include "machine.h"
 #include "scene_setup.h"
 #include "stats.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -130,11 +131,41 @@ static void print_methods(void)
 
 // ---- a scene ----------------------------------------------------------------------------------
 
+// What is in its files, also where no scene can be made of them.
+static int print_grids(const info_args *args, const info_grids *grids, app *a)
+{
+    if (!grids) {
+        return EXIT_DONE;
+    }
+    if (!args->json) {
+        info_grids_print(grids);
+        return EXIT_DONE;
+    }
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "scene", args->scene.scene);
+    info_grids_json(grids, json);
+    return json_write(a, json, NULL);
+}
+
 static int print_scene(app *a, const info_args *args)
 {
     tyn_scene scene;
     regime r = {0};
+    const uint32_t frame = isnan(args->scene.frame) ? 0 : (uint32_t)args->scene.frame;
+    info_grids *grids =
+        info_grids_read(args->scene.scene, isnan(args->scene.frame) ? NULL : &frame);
     int code = scene_open(a, &args->scene, &scene);
+    if (code != EXIT_DONE) {
+        if (info_grids_wanted(args->scene.scene, grids)) {
+            print_grids(args, grids, a);
+        }
+        info_grids_free(grids);
+        return code;
+    }
+    if (grids && info_grids_failed(grids)) { // of the scene's own grids none is
+        app_warn(a,
+                 "a volume file has a damaged grid beside those that are read: it is not listed");
+    }
     tyn_view view = {0};
     if (code == EXIT_DONE) {
         code = view_setup(a, &args->view, &scene, &view);
@@ -150,14 +181,19 @@ static int print_scene(app *a, const info_args *args)
     }
     if (code == EXIT_DONE && args->json) {
         cJSON *json = info_json_scene(args->scene.scene, &scene, &r);
+        if (grids) {
+            info_grids_json(grids, json);
+        }
         cJSON_AddItemToObject(json, "outlook", info_json_outlook(&f, &r, view.width, view.height));
         code = json_write(a, json, NULL);
     } else if (code == EXIT_DONE) {
+        print_grids(args, grids, a);
         info_print_scene(&scene);
         info_print_regime(&r);
         info_print_outlook(&f, &r, view.width, view.height);
     }
     fronts_finish(&f);
+    info_grids_free(grids);
     tyn_scene_finish(&scene);
     return code;
 }

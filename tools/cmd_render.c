@@ -365,7 +365,7 @@ static void note_darkness(app *a, const tyn_scene *scene)
         lit = lit || shines(scene->lights[i].color);
     }
     for (uint32_t i = 0; i < scene->num_media; i++) {
-        lit = lit || shines(scene->media[i].emission);
+        lit = lit || shines(scene->media[i].emission) || scene->media[i].radiance_grid;
     }
     for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
         lit = lit || shines(scene->surfaces.materials[i].emission);

@@ -113,6 +113,12 @@ static void add_floats(cJSON *object, const char *name, const float *values, int
     cJSON_AddItemToObject(object, name, json_floats(values, count));
 }
 
+// An index of color_grids, or null.
+static void add_grid(cJSON *medium, const char *name, uint32_t slot)
+{
+    cJSON_AddItemToObject(medium, name, slot ? cJSON_CreateNumber(slot - 1) : cJSON_CreateNull());
+}
+
 static void add_media(cJSON *root, const tyn_scene *scene)
 {
     cJSON *volumes = cJSON_AddArrayToObject(root, "volumes");
@@ -124,6 +130,17 @@ static void add_media(cJSON *root, const tyn_scene *scene)
         cJSON_AddItemToObject(volume, "voxels", cJSON_CreateIntArray(size, 3));
         json_add_float(volume, "max_density", v->max_density);
         cJSON_AddItemToArray(volumes, volume);
+    }
+    cJSON *colors = cJSON_AddArrayToObject(root, "color_grids");
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        const tyn_color_grid *g = &scene->color_grids[i];
+        const int size[3] = {(int)g->size[0], (int)g->size[1], (int)g->size[2]};
+        cJSON *color = cJSON_CreateObject();
+        add_text(color, "name", g->name);
+        cJSON_AddItemToObject(color, "voxels", cJSON_CreateIntArray(size, 3));
+        cJSON_AddNumberToObject(color, "channels", g->channels);
+        json_add_float(color, "max", g->max);
+        cJSON_AddItemToArray(colors, color);
     }
     cJSON *media = cJSON_AddArrayToObject(root, "media");
     for (uint32_t i = 0; i < scene->num_media; i++) {
@@ -141,6 +158,9 @@ static void add_media(cJSON *root, const tyn_scene *scene)
             add_floats(medium, p->name, values, 3);
         }
         add_floats(medium, "emission", m->emission, 3);
+        add_grid(medium, "emission_grid", m->emission_grid);
+        add_grid(medium, "radiance_grid", m->radiance_grid);
+        add_grid(medium, "albedo_grid", m->albedo_grid);
         cJSON_AddItemToArray(media, medium);
     }
     cJSON *shapes = cJSON_AddArrayToObject(root, "shapes");

@@ -21,6 +21,11 @@ static void print_media(const tyn_scene *scene)
         printf("volume %u '%s': %ux%ux%u voxels, density up to %g\n", i, name_or(v->name),
                v->size[0], v->size[1], v->size[2], v->max_density);
     }
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        const tyn_color_grid *g = &scene->color_grids[i];
+        printf("colours %u '%s': %ux%ux%u voxels, %s, values up to %g\n", i, name_or(g->name),
+               g->size[0], g->size[1], g->size[2], g->channels == 3 ? "RGB" : "grey", g->max);
+    }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         const tyn_medium *m = &scene->media[i];
         printf("medium %u '%s': ", i, name_or(m->name));
@@ -38,7 +43,18 @@ static void print_media(const tyn_scene *scene)
             print_color(" ", values, "\n");
         }
         if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
-            print_color("  emission    ", m->emission, " W/(m^3 sr)\n");
+            print_color("  emission    ", m->emission, " W/(m^3 sr)");
+            if (m->emission_grid) {
+                printf(" x colours %u", m->emission_grid - 1);
+            }
+            printf("\n");
+        }
+        if (m->radiance_grid) {
+            printf("  black bodies of colours %u, W/(m^2 sr), x absorption\n",
+                   m->radiance_grid - 1);
+        }
+        if (m->albedo_grid) {
+            printf("  albedo of colours %u\n", m->albedo_grid - 1);
         }
     }
     for (uint32_t i = 0; i < scene->num_shapes; i++) {

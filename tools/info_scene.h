@@ -4,6 +4,16 @@
 #include "fronts.h"
 #include "regime_limits.h"
 
+// Every grid of the .vdb and .nvdb files of a scene, or of such a file itself; `frame` as of tyn_scene_files.
+typedef struct info_grids info_grids;
+info_grids *info_grids_read(const char *scene, const uint32_t *frame);
+bool info_grids_failed(const info_grids *grids); // a file is damaged, or not there
+// Is the list of use where no scene can be made? Of a volume file with sound grids of numbers, none of which is a density.
+bool info_grids_wanted(const char *scene, const info_grids *grids);
+void info_grids_print(const info_grids *grids);
+void info_grids_json(const info_grids *grids, cJSON *root); // "files": [{"path", "grids": [...]}]
+void info_grids_free(info_grids *grids);
+
 void info_print_scene(const tyn_scene *scene);
 void info_print_regime(const regime *r);
 

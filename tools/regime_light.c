@@ -43,7 +43,9 @@ static bool one_tint(const tyn_scene *scene)
         same &= of_tint(scene->lights[i].color, tint);
     }
     for (uint32_t i = 0; i < scene->num_media; i++) {
-        same &= of_tint(scene->media[i].emission, tint);
+        const tyn_medium *m = &scene->media[i];
+        same &= of_tint(m->emission, tint);
+        same &= !m->emission_grid && !m->radiance_grid && !m->albedo_grid;
     }
     if (scene->environment.present) {
         same &= of_tint(scene->environment.radiance, tint);

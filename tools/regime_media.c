@@ -20,18 +20,16 @@ void regime_media_make(const tyn_scene *scene, regime_media *media)
     }
 }
 
-// Trilinear between voxel centres, clamped to the edge. `p` in [0, 1]^3.
-static double density_at(const tyn_volume *v, const double p[3])
+// Trilinear between voxel centres, clamped to the edge, of one of `channels` values a voxel. `p` in [0, 1]^3.
+static double value_at(const uint32_t size[3], const float *data, uint32_t channels,
+                       uint32_t channel, const double p[3])
 {
     size_t lo[3], hi[3];
     double t[3], sum = 0;
-    if (!v->data) {
-        return v->max_density;
-    }
     for (int a = 0; a < 3; a++) {
-        const double x = fmin(fmax(p[a] * v->size[a] - 0.5, 0), v->size[a] - 1.0);
+        const double x = fmin(fmax(p[a] * size[a] - 0.5, 0), size[a] - 1.0);
         lo[a] = (size_t)x;
-        hi[a] = lo[a] + 1 < v->size[a] ? lo[a] + 1 : lo[a];
+        hi[a] = lo[a] + 1 < size[a] ? lo[a] + 1 : lo[a];
         t[a] = x - (double)lo[a];
     }
     for (int k = 0; k < 8; k++) {
@@ -39,54 +37,76 @@ static double density_at(const tyn_volume *v, const double p[3])
                      z = k & 4 ? hi[2] : lo[2];
         const double weight =
             (k & 1 ? t[0] : 1 - t[0]) * (k & 2 ? t[1] : 1 - t[1]) * (k & 4 ? t[2] : 1 - t[2]);
-        sum += weight * v->data[(z * v->size[1] + y) * v->size[0] + x];
+        sum += weight * data[((z * size[1] + y) * size[0] + x) * channels + channel];
     }
     return sum;
 }
 
-// Density of the medium of shape `i` at a point of the world.
-static double shape_density(const regime_media *media, uint32_t i, const double world[3])
+static double density_at(const tyn_volume *v, const double p[3])
+{
+    return v->data ? value_at(v->size, v->data, 1, 0, p) : v->max_density;
+}
+
+static double color_at(const tyn_scene *scene, uint32_t slot, int channel, const double p[3])
+{
+    const tyn_color_grid *g = &scene->color_grids[slot - 1];
+    return value_at(g->size, g->data, g->channels, g->channels == 3 ? (uint32_t)channel : 0, p);
+}
+
+// Where in the box of shape `i` a point of the world is, in [0, 1]^3. False: outside of it.
+static bool in_shape(const regime_media *media, uint32_t i, const double world[3], double p[3])
 {
     const tyn_shape *shape = &media->scene->shapes[i];
-    const tyn_medium *medium = &media->scene->media[shape->medium];
-    double p[3], r2 = 0;
+    double r2 = 0;
     for (int a = 0; a < 3; a++) {
         p[a] = regime_dot(media->to_local[i][a], world) + media->to_local[i][a][3];
         p[a] = shape->repeat[a] ? p[a] - floor(p[a] + 0.5) : p[a];
         if (fabs(p[a]) > 0.5 + 1e-9) {
-            return 0;
+            return false;
         }
         r2 += p[a] * p[a];
         p[a] += 0.5;
     }
-    if (shape->kind == TYN_SHAPE_SPHERE && r2 > 0.25) {
-        return 0;
-    }
-    const double density =
-        medium->volume < 0 ? 1 : density_at(&media->scene->volumes[medium->volume], p);
-    return density * tyn_medium_scale(medium);
+    return shape->kind != TYN_SHAPE_SPHERE || r2 <= 0.25;
 }
 
 bool regime_media_at(const regime_media *media, const double world[3], regime_coefficients *out)
 {
     bool found = false;
+    const tyn_scene *scene = media->scene;
     *out = (regime_coefficients){.least_g = 1, .most_g = -1};
-    for (uint32_t i = 0; i < media->scene->num_shapes; i++) {
-        const double density = shape_density(media, i, world);
-        const tyn_medium *m = &media->scene->media[media->scene->shapes[i].medium];
-        for (int c = 0; c < 3 && density > 0; c++) {
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
+        double p[3];
+        if (!in_shape(media, i, world, p)) {
+            continue;
+        }
+        const double density =
+            tyn_medium_scale(m) * (m->volume < 0 ? 1 : density_at(&scene->volumes[m->volume], p));
+        for (int c = 0; c < 3 && (density > 0 || m->emission_grid); c++) {
             const double g = tyn_phase_mean_cosine(m->phase[c]);
             const double forward = tyn_phase_delta_fraction(m->phase[c]);
-            out->sigma_s[c] += density * m->sigma_s[c];
-            out->sigma_a[c] += density * m->sigma_a[c];
-            out->g_sigma_s[c] += density * m->sigma_s[c] * g;
-            out->scaled[c] += density * (m->sigma_a[c] + (1 - forward) * m->sigma_s[c]);
-            out->emission[c] += density * m->emission[c];
-            if (m->sigma_s[c] > 0) {
+            double sigma_s = density * m->sigma_s[c], sigma_a = density * m->sigma_a[c];
+            if (m->albedo_grid) {
+                const double sigma_t = sigma_s + sigma_a;
+                sigma_s = sigma_t * color_at(scene, m->albedo_grid, c, p);
+                sigma_a = sigma_t - sigma_s;
+            }
+            double emission =
+                m->emission[c] *
+                (m->emission_grid ? color_at(scene, m->emission_grid, c, p) : density);
+            emission += m->radiance_grid ? sigma_a * color_at(scene, m->radiance_grid, c, p) : 0;
+            out->sigma_s[c] += sigma_s;
+            out->sigma_a[c] += sigma_a;
+            out->g_sigma_s[c] += sigma_s * g;
+            out->scaled[c] += sigma_a + (1 - forward) * sigma_s;
+            out->emission[c] += emission;
+            if (sigma_s > 0) {
                 out->least_g = fmin(out->least_g, g);
                 out->most_g = fmax(out->most_g, g);
             }
-            found |= m->sigma_s[c] + m->sigma_a[c] > 0 || m->emission[c] > 0;
+            found |= density > 0 ? m->sigma_s[c] + m->sigma_a[c] > 0 || m->emission[c] > 0
+                                 : emission > 0;
         }
     }
     return found;

@@ -158,6 +158,11 @@ cJSON *stats_inputs(const tyn_scene *scene, const char *const *paths, size_t num
         snprintf(name, sizeof name, "volume %u", i);
         add_hash(inputs, name, scene->volumes[i].hash);
     }
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "colours %u", i);
+        add_hash(inputs, name, scene->color_grids[i].hash);
+    }
     if (scene->environment.data) {
         add_hash(inputs, "environment", scene->environment.hash);
     }

@@ -83,9 +83,11 @@ static void choose_storage(tyn_context *ctx)
     tyn_settings_params(ctx->settings, &tyn_pass_medium, &medium);
     if (medium.storage == TYN_MEDIUM_STORAGE_AUTO) {
         // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
-        ctx->atlas.half &= ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+        ctx->colors.half = ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+        ctx->atlas.half &= ctx->colors.half;
     } else {
-        ctx->atlas.half &= medium.storage == TYN_MEDIUM_STORAGE_HALF;
+        ctx->colors.half = medium.storage == TYN_MEDIUM_STORAGE_HALF;
+        ctx->atlas.half &= ctx->colors.half;
     }
 }
 
@@ -112,6 +114,7 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
+        tyn_colors_plan(&ctx->colors, frame->scene);
         choose_storage(ctx);
     }
     if (result == TYN_OK) {

@@ -24,7 +24,7 @@ struct tyn_context {
     // What the last declaration was made from; the graph reads it until it has recorded.
     tyn_frame_scene frame;
     struct camera_block impostor; // a march made now sees the media by, where the picture is an impostor
-    tyn_atlas atlas;
+    tyn_atlas atlas, colors;
     const tyn_scene *scene;
     float (*points)[3]; // probe points in M
     uint32_t num_points;

@@ -133,6 +133,11 @@ static bool equal_coefficients(const tyn_medium *a, const tyn_medium *b)
     return equal;
 }
 
+static bool has_colors(const tyn_medium *m)
+{
+    return m->emission_grid || m->radiance_grid || m->albedo_grid;
+}
+
 static bool one_value(const float v[3])
 {
     return v[0] == v[1] && v[1] == v[2];
@@ -150,6 +155,12 @@ static void choose_size(const tyn_scene *scene, const double extent[3], uint32_t
         for (int a = 0; volume >= 0 && a < 3; a++) {
             h = fmin(h, length3(c[a]) / scene->volumes[volume].size[a]);
         }
+        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
+        const uint32_t slots[] = {m->emission_grid, m->radiance_grid, m->albedo_grid};
+        for (int k = 0; k < 9; k++) {
+            const uint32_t slot = slots[k / 3];
+            h = slot ? fmin(h, length3(c[k % 3]) / scene->color_grids[slot - 1].size[k % 3]) : h;
+        }
     }
     h = fmax(h, longest / RESAMPLED_MAX);
     for (int a = 0; a < 3; a++) {
@@ -165,7 +176,7 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
     float max_sum = 0;
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
-        equal &= equal_coefficients(first, m);
+        equal &= equal_coefficients(first, m) && !has_colors(m);
         max_sum += m->volume < 0 ? 1.0f : scene->volumes[m->volume].max_density;
     }
     b->mode = equal ? TYN_MEDIUM_DENSITY : TYN_MEDIUM_COEFFICIENTS;
@@ -236,6 +247,36 @@ static void local_from_m(const tyn_shape *shape, const rigid *m, tyn_vec4 rows[3
     }
 }
 
+// Grids of colours, those that bring something; `lit`: whether they emit.
+static bool build_colors(struct shape_block *b, const tyn_scene *scene, const tyn_medium *medium)
+{
+    float sigma_a = 0, emission = 0;
+    b->colors[TYN_COLORS_ALBEDO] = tyn_colors_place(scene, medium->albedo_grid);
+    const bool albedo = b->colors[TYN_COLORS_ALBEDO].size[0];
+    if (medium->albedo_grid && !albedo) { // it is black
+        for (int c = 0; c < 3; c++) {
+            b->sigma_a[c] += b->sigma_s[c];
+            b->sigma_s[c] = 0;
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        sigma_a += b->sigma_a[c] + (albedo ? b->sigma_s[c] : 0);
+        emission += medium->emission[c];
+    }
+    if (medium->emission_grid) {
+        b->colors[TYN_COLORS_EMISSION] =
+            tyn_colors_place(scene, emission > 0 ? medium->emission_grid : 0);
+        // Without density, whatever its scale.
+        const bool lit = b->colors[TYN_COLORS_EMISSION].size[0];
+        for (int c = 0; c < 3; c++) {
+            b->emission[c] = lit ? medium->emission[c] : 0;
+        }
+    }
+    b->colors[TYN_COLORS_RADIANCE] =
+        tyn_colors_place(scene, sigma_a > 0 ? medium->radiance_grid : 0);
+    return b->colors[TYN_COLORS_RADIANCE].size[0];
+}
+
 static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
 {
     out->empty = true;
@@ -255,8 +296,14 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
             b->sigma_a[a] = medium->sigma_a[a] * scale;
             b->phase[a] = medium->phase[a];
             b->emission[a] = medium->emission[a] * scale;
+        }
+        out->emissive |= build_colors(b, scene, medium);
+        for (int a = 0; a < 3; a++) {
+            // What emits by a grid of its own is there where the density is 0.
+            const bool hollow =
+                volume && volume->max_density <= 0 && !b->colors[TYN_COLORS_EMISSION].size[0];
             bool dark = b->sigma_s[a] + b->sigma_a[a] + b->emission[a] <= 0;
-            out->empty &= dark || (volume && volume->max_density <= 0);
+            out->empty &= dark || hollow;
             out->emissive |= b->emission[a] > 0;
         }
     }
@@ -543,7 +590,8 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     if (result != TYN_OK) {
         return result;
     }
-    out->direct = unsheared && !mirrored && scene->shapes[0].kind == TYN_SHAPE_BOX &&
+    const bool colors = scene->num_shapes && has_colors(&scene->media[scene->shapes[0].medium]);
+    out->direct = unsheared && !mirrored && !colors && scene->shapes[0].kind == TYN_SHAPE_BOX &&
                   (scene->media[scene->shapes[0].medium].volume < 0
                        ? scene->num_volumes == 0
                        : scene->num_volumes == 1 && atlas.extent.z == scene->volumes[0].size[2]);

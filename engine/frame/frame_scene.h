@@ -23,6 +23,13 @@ void tyn_atlas_fill(const tyn_atlas *atlas, const tyn_scene *scene, void *texels
 uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene);
 uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z
 
+// The same for grids of colours: RGBA, in the order of scene.color_grids; {0,0,0} extent if there are none.
+void tyn_colors_plan(tyn_atlas *colors, const tyn_scene *scene);
+void tyn_colors_fill(const tyn_atlas *colors, const tyn_scene *scene, void *texels);
+uint64_t tyn_colors_hash(const tyn_scene *scene);
+// Where a grid is, `slot` as in tyn_medium: 1 + its index, 0: none.
+struct shape_colors tyn_colors_place(const tyn_scene *scene, uint32_t slot);
+
 // At which faces of its box a grid is not 0: bit 2 a for the low face of axis a, 2 a + 1 for the high one.
 uint32_t tyn_volume_open_faces(const tyn_volume *volume);
 

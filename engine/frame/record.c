@@ -13,9 +13,11 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_context_clear_warnings(ctx);
     tyn_result result = tyn_frame_declare(ctx, frame);
-    uint64_t data = result == TYN_OK
-                        ? tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash)
-                        : 0;
+    uint64_t data = 0;
+    if (result == TYN_OK) {
+        data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash);
+        data = tyn_hash_u64(data, tyn_colors_hash(frame->scene));
+    }
     if (result == TYN_OK && data != ctx->checked_data) {
         result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
         ctx->checked_data = result == TYN_OK ? data : 0;

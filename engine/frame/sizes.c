@@ -42,6 +42,14 @@ static uint64_t add_scene(uint64_t h, const tyn_scene *scene)
         h = tyn_hash_bytes(h, v->size, sizeof v->size);
         h = tyn_hash_u64(h, v->data != NULL);
     }
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        h = tyn_hash_bytes(h, scene->color_grids[i].size, sizeof scene->color_grids[i].size);
+    }
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        const tyn_medium *m = &scene->media[i];
+        const uint32_t slots[] = {m->emission_grid, m->radiance_grid, m->albedo_grid};
+        h = tyn_hash_bytes(h, slots, sizeof slots);
+    }
     for (uint32_t i = 0; i < s->num_textures; i++) {
         h = tyn_hash_bytes(h, s->textures[i].size, sizeof s->textures[i].size);
     }

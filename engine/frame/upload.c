@@ -10,6 +10,12 @@ static void fill_atlas(void *user, void *texels)
     tyn_atlas_fill(&ctx->atlas, ctx->scene, texels);
 }
 
+static void fill_colors(void *user, void *texels)
+{
+    const tyn_context *ctx = user;
+    tyn_colors_fill(&ctx->colors, ctx->scene, texels);
+}
+
 static void fill_environment(void *user, void *texels)
 {
     const tyn_environment *env = &((const tyn_context *)user)->scene->environment;
@@ -99,6 +105,13 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
         refs->atlas = tyn_graph_upload_image(
             g, "atlas", TYN_IMAGE_3D, ctx->atlas.half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT,
             ctx->atlas.extent, fill_atlas, ctx, tyn_atlas_hash(&ctx->atlas, scene));
+    }
+    if (ctx->colors.extent.z) {
+        refs->colors = tyn_graph_upload_image(
+            g, "colors", TYN_IMAGE_3D,
+            ctx->colors.half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
+            ctx->colors.extent, fill_colors, ctx, tyn_colors_hash(scene));
+        tyn_graph_mark_media(g, refs->colors);
     }
     refs->medium = tyn_graph_upload_buffer(g, "medium", &f->medium, sizeof f->medium, 0);
     refs->shapes = tyn_graph_upload_buffer(g, "shapes", f->shapes, sizeof f->shapes, 0);

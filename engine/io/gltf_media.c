@@ -6,118 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include "io/raw.h"
 #include "io/uri.h"
 #include "io/volume.h"
 #include "scene/matrix.h"
 
 // ---- media ----------------------------------------------------------------------------------
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, extension) == 0;
-}
-
-static tyn_result load_raw(tyn_volume *volume, const char *path, const json_doc *doc,
-                           const cJSON *density, uint64_t *clamped, const tyn_log *log)
-{
-    static const char *const types[] = {"f32", "f16", "u8"};
-    double size[3] = {0};
-    const char *name = "";
-    int type = 0;
-    TYN_TRY(tyn_json_numbers(doc, density, "size", 3, 1, 65536, "a number of voxels, 1 to 65536",
-                             size));
-    TYN_TRY(tyn_json_string(doc, density, "type", &name));
-    while (type < 3 && strcmp(name, types[type]) != 0) {
-        type++;
-    }
-    if (size[0] == 0.0 || type == 3) {
-        return tyn_json_fault(doc, density,
-                              "a .raw grid needs \"size\": [nx, ny, nz] and \"type\": \"f32\", "
-                              "\"f16\" or \"u8\"");
-    }
-    void *bytes;
-    size_t num_bytes;
-    TYN_TRY(tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &num_bytes, log));
-    tyn_result r = tyn_raw_parse(volume, bytes, num_bytes,
-                                 (int64_t[]){(int64_t)size[0], (int64_t)size[1], (int64_t)size[2]},
-                                 (tyn_raw_type)type, path, clamped, log);
-    free(bytes);
-    return r;
-}
-
-static tyn_result add_volume(tyn_scene *scene, const tyn_volume *volume, uint64_t clamped,
-                             const json_doc *doc, int32_t *index)
-{
-    for (uint32_t i = 0; i < scene->num_volumes; i++) { // two media may share a grid
-        const tyn_volume *other = &scene->volumes[i];
-        if (other->hash == volume->hash &&
-            memcmp(other->size, volume->size, sizeof other->size) == 0 &&
-            memcmp(other->index_to_world, volume->index_to_world, sizeof other->index_to_world) ==
-                0) {
-            tyn_volume extra = *volume;
-            tyn_volume_finish(&extra);
-            *index = (int32_t)i;
-            return TYN_OK;
-        }
-    }
-    tyn_volume *grown = realloc(scene->volumes, (scene->num_volumes + 1) * sizeof *grown);
-    if (!grown) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its volumes", doc->file);
-        return TYN_ERR_MEMORY;
-    }
-    scene->volumes = grown;
-    *index = (int32_t)scene->num_volumes;
-    grown[scene->num_volumes++] = *volume;
-    if (clamped) {
-        scene->clamped_negative += clamped;
-        tyn_scene_warn(scene, "%s: %llu negative densities were set to 0",
-                       volume->name ? volume->name : "volume", (unsigned long long)clamped);
-    }
-    return TYN_OK;
-}
-
-static tyn_result read_density(tyn_scene *scene, tyn_medium *medium, bool *own_transform,
-                               const json_doc *doc, const cJSON *density)
-{
-    double scale = 1.0;
-    const char *grid = NULL;
-    uint64_t clamped = 0;
-    tyn_volume volume = {0};
-    const cJSON *uri = tyn_json_member(density, "uri");
-    TYN_TRY(tyn_json_number(doc, density, "scale", 0.0, FLT_MAX, "a number >= 0", &scale));
-    TYN_TRY(tyn_json_string(doc, density, "grid", &grid));
-    if (!uri) {
-        return tyn_json_fault(doc, density, "uri is missing: a .nvdb, .vdb or .raw file");
-    }
-    char *path = tyn_uri_path(doc, uri);
-    if (!path) {
-        return TYN_ERR_PARAMS;
-    }
-    tyn_capture capture;
-    tyn_capture_init(&capture);
-    bool raw = has_extension(path, ".raw");
-    tyn_result r = raw ? load_raw(&volume, path, doc, density, &clamped, &capture.log)
-                       : tyn_volume_load(&volume, path, grid, &clamped, &capture.log);
-    free(path);
-    if (r) {
-        return capture.message[0] ? tyn_capture_fault(&capture, doc, uri, r) : r;
-    }
-    medium->density_scale = (float)scale;
-    *own_transform = !raw;
-    r = add_volume(scene, &volume, clamped, doc, &medium->volume);
-    if (r) {
-        tyn_volume_finish(&volume);
-    }
-    return r;
-}
-
 static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_doc *doc,
                               const cJSON *from)
 {
     const char *name = NULL;
-    cJSON *density;
     if (scene->num_media == TYN_MAX_MEDIA) {
         return tyn_json_fault(doc, from, "there may be %d media", TYN_MAX_MEDIA);
     }
@@ -134,13 +32,7 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
     }
     TYN_TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
                            medium->emission));
-    TYN_TRY(tyn_json_object(doc, from, "density", &density));
-    if (density) {
-        TYN_TRY(read_density(scene, medium, &media->own_transform[scene->num_media], doc, density));
-        if (medium->density_scale == 0.0f) {
-            tyn_medium_clear(medium);
-        }
-    }
+    TYN_TRY(tyn_gltf_read_grids(scene, medium, &media->grids[scene->num_media], doc, from));
     medium->name = name ? strdup(name) : NULL;
     scene->num_media++;
     return TYN_OK;
@@ -224,14 +116,14 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
     if (strcmp(kind, "sphere") == 0) {
         shape->kind = TYN_SHAPE_SPHERE;
     } else if (strcmp(kind, "grid") == 0) {
-        if (!media->own_transform[medium]) {
+        const gltf_grids *own = &media->grids[medium];
+        if (!own->placed) {
             return tyn_json_fault(
                 doc, tyn_json_member(extension, "shape"),
                 "only media with a .vdb or .nvdb density have a grid of their own");
         }
-        const tyn_volume *volume = &scene->volumes[scene->media[medium].volume];
-        mat_mul(m, m, volume->index_to_world);
-        box_to_index(box, volume->size);
+        mat_mul(m, m, own->index_to_world);
+        box_to_index(box, own->size);
         mat_mul(m, m, box);
     } else if (strcmp(kind, "box") != 0) {
         return tyn_json_fault(doc, tyn_json_member(extension, "shape"),
@@ -353,7 +245,8 @@ void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
 {
     static const char media[] = "TYN_participating_media", maps[] = "TYN_environment_map";
     unknown u = {0};
-    char coefficients[256] = " scattering absorption emission density ";
+    char coefficients[256] =
+        " scattering absorption emission density temperature emission_density albedo ";
     for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
         const size_t used = strlen(coefficients);
         snprintf(coefficients + used, sizeof coefficients - used, "%s ", p->key);
@@ -364,6 +257,11 @@ void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
     cJSON_ArrayForEach(medium, list)
     {
         look(&u, tyn_json_member(medium, "density"), " uri grid scale size type ");
+        look(&u, tyn_json_member(medium, "temperature"),
+             " uri grid scale offset strength luminance size type ");
+        look(&u, tyn_json_member(medium, "emission_density"),
+             " uri grid scale size type channels ");
+        look(&u, tyn_json_member(medium, "albedo"), " uri grid size type channels ");
     }
     look_at_all(&u, tyn_json_member(doc->root, "nodes"), media, " medium shape repeat ");
     at = extension_of(doc->root, maps);

@@ -2,10 +2,20 @@
 #pragma once
 #include "io/json.h"
 
-// Which media have a grid with a transform of its own (shape "grid").
+// The box that all grids of a medium fill, by the transform of a .vdb or .nvdb file (shape "grid").
+typedef struct gltf_grids {
+    bool placed; // there is one
+    double index_to_world[16];
+    uint32_t size[3];
+} gltf_grids;
+
 typedef struct gltf_media {
-    bool own_transform[TYN_MAX_MEDIA];
+    gltf_grids grids[TYN_MAX_MEDIA];
 } gltf_media;
+
+// A medium's density, temperature, emission_density and albedo; its coefficients have been read.
+tyn_result tyn_gltf_read_grids(tyn_scene *scene, tyn_medium *medium, gltf_grids *place,
+                               const json_doc *doc, const cJSON *from);
 
 // The root's TYN_participating_media: coefficients and volumes into the scene.
 tyn_result tyn_gltf_read_media(tyn_scene *scene, gltf_media *media, const json_doc *doc);

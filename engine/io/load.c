@@ -6,6 +6,7 @@
 #include <strings.h>
 #include "io/bare.h"
 #include "io/gltf.h"
+#include "io/volume.h"
 #include "base/given.h"
 
 static bool is_one_of(const char *path, const char *const *extensions)
@@ -35,17 +36,23 @@ static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *envi
 static tyn_result load_bare(tyn_scene *scene, const char *path, const char *environment,
                             const tyn_log *log)
 {
-    tyn_volume volume;
-    uint64_t clamped = 0;
-    tyn_result r = tyn_volume_load(&volume, path, NULL, &clamped, log);
+    tyn_grid_job job = {.log = log};
+    tyn_result r = tyn_grid_read(&job, path);
     if (r) {
         return r;
     }
-    r = tyn_bare_scene(scene, &volume, environment, log);
-    if (!r && clamped) {
-        scene->clamped_negative = clamped;
+    r = tyn_bare_scene(scene, &job.volume, environment, log);
+    if (!r && job.clamped) {
+        scene->clamped_negative = job.clamped;
         tyn_scene_warn(scene, "%s: %llu negative densities were set to 0", path,
-                       (unsigned long long)clamped);
+                       (unsigned long long)job.clamped);
+    }
+    if (!r && job.guessed) {
+        tyn_scene_warn(scene, "%s: is taken for the density: none is called so",
+                       scene->volumes[0].name ? scene->volumes[0].name : path);
+    }
+    if (!r && job.left_out[0]) {
+        tyn_scene_warn(scene, "%s: left out of the file: %s", path, job.left_out);
     }
     return r;
 }

@@ -5,6 +5,7 @@
 // Every read goes through PNanoVDB's bounds check, and every node is checked to lie inside the
 // block.
 #include "io/nvdb.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -33,6 +34,7 @@ typedef struct input {
 // A grid as the file lists it.
 typedef struct entry {
     const char *name;    // in the file
+    const uint8_t *meta; // its record, in the file
     const uint8_t *data; // in the file
     uint64_t file_size, grid_size;
     uint32_t type, grid_class;
@@ -92,6 +94,7 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
         }
         grown[list->count + i] = (entry){
             .name = (const char *)meta + META_BYTES,
+            .meta = meta,
             .grid_size = load(meta, 8),
             .file_size = load(meta + 8, 8),
             .type = (uint32_t)load(meta + 32, 4),
@@ -132,23 +135,32 @@ static bool is_readable(const entry *e)
             (e->type >= PNANOVDB_GRID_TYPE_FP4 && e->type <= PNANOVDB_GRID_TYPE_FPN));
 }
 
-static const entry *choose(const contents *list, const char *grid, const input *in)
+static bool is_vector(const entry *e)
+{
+    return e->type == PNANOVDB_GRID_TYPE_VEC3F;
+}
+
+static const entry *choose(const contents *list, tyn_grid_job *job, const input *in)
 {
     const char **names = calloc(list->count + 1, sizeof *names);
     const char **types = calloc(list->count + 1, sizeof *types);
     bool *readable = calloc(list->count + 1, sizeof *readable);
+    bool *vector = calloc(list->count + 1, sizeof *vector);
     int chosen = -1;
-    for (uint32_t i = 0; names && types && readable && i < list->count; i++) {
+    const bool room = names && types && readable && vector;
+    for (uint32_t i = 0; room && i < list->count; i++) {
         names[i] = list->grids[i].name;
         types[i] = type_name(&list->grids[i]);
         readable[i] = is_readable(&list->grids[i]);
+        vector[i] = is_vector(&list->grids[i]);
     }
-    if (names && types && readable) {
-        chosen = tyn_volume_choose(names, types, readable, list->count, grid, in->file, in->log);
+    if (room) {
+        chosen = tyn_volume_choose(job, names, types, readable, vector, list->count, in->file);
     }
     free(names);
     free(types);
     free(readable);
+    free(vector);
     return chosen < 0 ? NULL : &list->grids[chosen];
 }
 
@@ -243,6 +255,7 @@ typedef struct extraction {
     const pnanovdb_grid_type_constants_t *layout;
     int64_t lo[3]; // index coordinates of the first voxel of the volume
     tyn_volume *volume;
+    uint32_t channels;    // of a voxel
     uint64_t voxels_left; // that no tile or leaf has covered
 } extraction;
 
@@ -269,43 +282,54 @@ static bool clip(const extraction *x, const int64_t origin[3], int64_t side, reg
 static float *voxel(const extraction *x, uint32_t i, uint32_t j, uint32_t k)
 {
     const uint32_t *n = x->volume->size;
-    return x->volume->data + ((size_t)k * n[1] + j) * n[0] + i;
+    return x->volume->data + (((size_t)k * n[1] + j) * n[0] + i) * x->channels;
 }
 
-static void fill(const extraction *x, const region *r, float value)
+static void fill(const extraction *x, const region *r, const float value[3])
 {
     for (uint32_t k = r->begin[2]; k < r->end[2]; k++) {
         for (uint32_t j = r->begin[1]; j < r->end[1]; j++) {
             float *row = voxel(x, 0, j, k);
             for (uint32_t i = r->begin[0]; i < r->end[0]; i++) {
-                row[i] = value;
+                memcpy(row + (size_t)i * x->channels, value, x->channels * sizeof *value);
             }
         }
     }
 }
 
 // A value of a tile or the background (float for the quantised types).
-static float tile_value(const extraction *x, pnanovdb_address_t address)
+static void tile_value(const extraction *x, pnanovdb_address_t address, float value[3])
 {
-    return x->type == PNANOVDB_GRID_TYPE_HALF
-               ? tyn_half_to_float((uint16_t)pnanovdb_read_half(x->buf, address))
-               : pnanovdb_read_float(x->buf, address);
+    if (x->channels == 3) {
+        for (uint32_t c = 0; c < 3; c++) {
+            value[c] = pnanovdb_read_float(x->buf, pnanovdb_address_offset(address, 4 * c));
+        }
+        return;
+    }
+    value[0] = x->type == PNANOVDB_GRID_TYPE_HALF
+                   ? tyn_half_to_float((uint16_t)pnanovdb_read_half(x->buf, address))
+                   : pnanovdb_read_float(x->buf, address);
 }
 
-static float leaf_value(const extraction *x, pnanovdb_leaf_handle_t leaf, pnanovdb_coord_t ijk)
+static void leaf_value(const extraction *x, pnanovdb_leaf_handle_t leaf, pnanovdb_coord_t ijk,
+                       float value[3])
 {
     pnanovdb_address_t at = pnanovdb_leaf_get_value_address(x->type, x->buf, leaf, &ijk);
     switch (x->type) {
     case PNANOVDB_GRID_TYPE_FP4:
-        return pnanovdb_leaf_fp4_read_float(x->buf, at, &ijk);
+        value[0] = pnanovdb_leaf_fp4_read_float(x->buf, at, &ijk);
+        return;
     case PNANOVDB_GRID_TYPE_FP8:
-        return pnanovdb_leaf_fp8_read_float(x->buf, at, &ijk);
+        value[0] = pnanovdb_leaf_fp8_read_float(x->buf, at, &ijk);
+        return;
     case PNANOVDB_GRID_TYPE_FP16:
-        return pnanovdb_leaf_fp16_read_float(x->buf, at, &ijk);
+        value[0] = pnanovdb_leaf_fp16_read_float(x->buf, at, &ijk);
+        return;
     case PNANOVDB_GRID_TYPE_FPN:
-        return pnanovdb_leaf_fpn_read_float(x->buf, at, &ijk);
+        value[0] = pnanovdb_leaf_fpn_read_float(x->buf, at, &ijk);
+        return;
     default:
-        return tile_value(x, at);
+        tile_value(x, at, value);
     }
 }
 
@@ -325,7 +349,9 @@ static bool copy_tile(extraction *x, const region *r, pnanovdb_address_t value)
     if (!take(x, r)) {
         return false;
     }
-    fill(x, r, tile_value(x, value));
+    float v[3];
+    tile_value(x, value, v);
+    fill(x, r, v);
     return true;
 }
 
@@ -364,7 +390,7 @@ static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t 
                 pnanovdb_coord_t ijk = {(int32_t)(i + x->lo[0] - origin[0]),
                                         (int32_t)(j + x->lo[1] - origin[1]),
                                         (int32_t)(k + x->lo[2] - origin[2])};
-                *voxel(x, i, j, k) = leaf_value(x, leaf, ijk);
+                leaf_value(x, leaf, ijk, voxel(x, i, j, k));
             }
         }
     }
@@ -439,7 +465,9 @@ static bool copy_root(extraction *x, pnanovdb_root_handle_t root)
     pnanovdb_address_t background =
         pnanovdb_address_offset(root.address, x->layout->root_off_background);
     if (clip(x, x->lo, 65536, &r)) {
-        fill(x, &r, tile_value(x, background));
+        float v[3];
+        tile_value(x, background, v);
+        fill(x, &r, v);
     }
     for (uint32_t n = 0; n < tiles; n++) {
         pnanovdb_root_tile_handle_t tile = pnanovdb_root_get_tile(x->type, root, n);
@@ -475,25 +503,39 @@ static void copy_map(extraction *x, pnanovdb_grid_handle_t grid)
     }
 }
 
-static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, const input *in)
+// The grid in memory, checked as far as its root.
+static tyn_result look_at(extraction *x, pnanovdb_root_handle_t *root, uint8_t *memory,
+                          const entry *e, const input *in)
 {
-    pnanovdb_grid_handle_t grid = {{0}};
-    extraction x = {
+    const pnanovdb_grid_handle_t grid = {{0}};
+    *x = (extraction){
         .buf = pnanovdb_make_buf((uint32_t *)(void *)memory, (e->grid_size + 7) / 8 * 2),
         .size = e->grid_size,
         .type = e->type,
         .layout = &pnanovdb_grid_type_constants[e->type],
-        .volume = volume,
+        .channels = is_vector(e) ? 3 : 1,
     };
-    pnanovdb_root_handle_t root =
-        pnanovdb_tree_get_root(x.buf, pnanovdb_grid_get_tree(x.buf, grid));
-    uint64_t at = root.address.byte_offset;
-    if (!known(memory, pnanovdb_grid_get_version(x.buf, grid)) ||
-        pnanovdb_grid_get_grid_type(x.buf, grid) != e->type || at % 8 != 0 ||
-        at < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE || at > x.size ||
-        x.size - at < x.layout->root_size) {
+    *root = pnanovdb_tree_get_root(x->buf, pnanovdb_grid_get_tree(x->buf, grid));
+    uint64_t at = root->address.byte_offset;
+    if (!known(memory, pnanovdb_grid_get_version(x->buf, grid)) ||
+        pnanovdb_grid_get_grid_type(x->buf, grid) != e->type || at % 8 != 0 ||
+        at < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE || at > x->size ||
+        x->size - at < x->layout->root_size) {
         return FAULT(in, "%s: grid \"%.100s\" is damaged in its header", in->file, e->name);
     }
+    return TYN_OK;
+}
+
+static tyn_result extract(tyn_grid_job *job, uint8_t *memory, const entry *e, const input *in)
+{
+    const pnanovdb_grid_handle_t grid = {{0}};
+    extraction x;
+    pnanovdb_root_handle_t root;
+    tyn_result r = look_at(&x, &root, memory, e, in);
+    if (r) {
+        return r;
+    }
+    x.volume = &job->volume;
     pnanovdb_coord_t lo = pnanovdb_root_get_bbox_min(x.buf, root);
     pnanovdb_coord_t hi = pnanovdb_root_get_bbox_max(x.buf, root);
     if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) {
@@ -501,14 +543,15 @@ static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, c
     }
     const int64_t size[3] = {(int64_t)hi.x - lo.x + 1, (int64_t)hi.y - lo.y + 1,
                              (int64_t)hi.z - lo.z + 1};
-    tyn_result r = tyn_volume_alloc(volume, size, in->file, in->log);
+    job->channels = x.channels;
+    r = tyn_volume_alloc(&job->volume, size, x.channels, in->file, in->log);
     if (r) {
         return r;
     }
     x.voxels_left = (uint64_t)(size[0] * size[1] * size[2]);
     x.lo[0] = lo.x, x.lo[1] = lo.y, x.lo[2] = lo.z;
     if (!copy_root(&x, root)) {
-        tyn_volume_finish(volume);
+        tyn_volume_finish(&job->volume);
         return FAULT(
             in, "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it or overlap",
             in->file, e->name);
@@ -517,14 +560,98 @@ static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, c
     return TYN_OK;
 }
 
-tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
-                          const char *file, uint64_t *clamped_negative, const tyn_log *log)
+// ---- what is in a file ------------------------------------------------------------------------
+
+// Least and largest value of the box that would be read.
+static void find_range(tyn_volume_grid *g, const tyn_grid_job *job)
 {
-    const input in = {bytes, file, log};
+    const uint32_t *n = job->volume.size;
+    const size_t count = (size_t)n[0] * n[1] * n[2] * job->channels;
+    for (size_t i = 0; i < count; i++) {
+        const float v = job->volume.data[i];
+        if (!(v - v == 0)) { // not finite
+            g->has_range = false;
+            return;
+        }
+        g->least = !g->has_range || v < g->least ? v : g->least;
+        g->most = !g->has_range || v > g->most ? v : g->most;
+        g->has_range = true;
+    }
+}
+
+// Of grids that can be read all; of others what the table of contents says of them.
+static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
+{
+    static const char *const classes[PNANOVDB_GRID_CLASS_END] = {
+        "unknown",    "level set", "fog volume",   "staggered", "point index",
+        "point data", "topology",  "voxel volume", "index grid"};
+    const uint8_t *meta = e->meta;
+    *g = (tyn_volume_grid){.active_voxels = load(meta + 24, 8)};
+    snprintf(g->name, sizeof g->name, "%s", e->name);
+    const bool level_set = e->grid_class == PNANOVDB_GRID_CLASS_LEVEL_SET;
+    const entry plain = {.type = e->type};
+    snprintf(g->type, sizeof g->type, "%s", type_name(&plain));
+    snprintf(g->grid_class, sizeof g->grid_class, "%s",
+             e->grid_class < PNANOVDB_GRID_CLASS_END ? classes[e->grid_class] : "unknown");
+    for (int a = 0; a < 3; a++) {
+        const uint64_t bits = load(meta + 112 + 8 * a, 8);
+        double edge;
+        memcpy(&edge, &bits, sizeof edge);
+        g->lo[a] = (int32_t)load(meta + 88 + 4 * a, 4);
+        g->hi[a] = (int32_t)load(meta + 100 + 4 * a, 4);
+        g->index_to_world[5 * a] = edge;
+    }
+    g->index_to_world[15] = 1;
+    g->affine = true;
+    tyn_result r = TYN_OK;
+    if (!level_set && g->active_voxels && (is_readable(e) || is_vector(e))) {
+        uint8_t *memory = NULL;
+        tyn_grid_job job = {.log = in->log};
+        r = unpack(e, in, &memory);
+        r = r ? r : extract(&job, memory, e, in);
+        if (!r) {
+            find_range(g, &job);
+            memcpy(g->index_to_world, job.volume.index_to_world, sizeof g->index_to_world);
+            for (int a = 0; a < 3; a++) { // that of a volume begins at its first voxel
+                for (int b = 0; b < 3; b++) {
+                    g->index_to_world[12 + a] -= g->index_to_world[4 * b + a] * g->lo[b];
+                }
+            }
+        }
+        tyn_volume_finish(&job.volume);
+        free(memory);
+    }
+    tyn_volume_grid_place(g);
+    return r;
+}
+
+static tyn_result tell_all(tyn_grid_job *job, const contents *list, const input *in)
+{
+    tyn_result r = TYN_OK;
+    job->list = calloc(list->count + 1, sizeof *job->list);
+    job->num_list = list->count;
+    if (!job->list) {
+        LOG(in, "%s: no memory to list its grids", in->file);
+        return TYN_ERR_MEMORY;
+    }
+    for (uint32_t i = 0; !r && i < list->count; i++) {
+        r = tell(&job->list[i], &list->grids[i], in);
+    }
+    if (r) {
+        free(job->list);
+        job->list = NULL;
+        job->num_list = 0;
+    }
+    return r;
+}
+
+tyn_result tyn_nvdb_read(tyn_grid_job *job, const void *bytes, size_t size, const char *file)
+{
+    const input in = {bytes, file, job->log};
     contents list = {0};
     uint8_t *memory = NULL;
     tyn_result r = TYN_OK;
-    memset(volume, 0, sizeof *volume);
+    memset(&job->volume, 0, sizeof job->volume);
     uint64_t at = 0;
     do {
         uint64_t length = read_segment(&list, (const uint8_t *)bytes + at, size - at, &in);
@@ -533,15 +660,30 @@ tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, co
         }
         at += length;
     } while (!r && at < size);
-    const entry *e = r ? NULL : choose(&list, grid, &in);
+    if (!r && job->use == TYN_GRID_LIST) {
+        r = tell_all(job, &list, &in);
+        free(list.grids);
+        return r;
+    }
+    const entry *e = r ? NULL : choose(&list, job, &in);
     if (e) {
         r = unpack(e, &in, &memory);
-        r = r ? r : extract(volume, memory, e, &in);
-        r = r ? r : tyn_volume_seal(volume, file, e->name, clamped_negative, log);
+        r = r ? r : extract(job, memory, e, &in);
+        r = r ? r : tyn_grid_seal(job, file, e->name);
     } else {
         r = TYN_ERR_PARAMS;
     }
     free(memory);
     free(list.grids);
+    return r;
+}
+
+tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
+                          const char *file, uint64_t *clamped_negative, const tyn_log *log)
+{
+    tyn_grid_job job = {.grid = grid, .log = log};
+    const tyn_result r = tyn_nvdb_read(&job, bytes, size, file);
+    *volume = job.volume;
+    *clamped_negative += job.clamped;
     return r;
 }

@@ -1,8 +1,11 @@
 // nvdb.h -- NanoVDB files (.nvdb).
 #pragma once
-#include <tyndall/io.h>
+#include "io/volume.h"
 
 // Reads one grid of a NanoVDB file in memory: uncompressed, ZIP, or BLOSC where the build has it;
-// float, half and the quantised float types. Faults are one line that names `file`.
+// float, half and the quantised float types, vec3f for colours. Faults are one line that names `file`.
+tyn_result tyn_nvdb_read(tyn_grid_job *job, const void *bytes, size_t size, const char *file);
+
+// A density by itself.
 tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
                           const char *file, uint64_t *clamped_negative, const tyn_log *log);

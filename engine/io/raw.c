@@ -9,27 +9,30 @@ static uint32_t load_u32(const uint8_t *p)
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-tyn_result tyn_raw_parse(tyn_volume *volume, const void *bytes, size_t num_bytes,
-                         const int64_t size[3], tyn_raw_type type, const char *file,
-                         uint64_t *clamped_negative, const tyn_log *log)
+tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
+                        const int64_t size[3], uint32_t channels, tyn_raw_type type,
+                        const char *file)
 {
     static const char *const names[] = {"f32", "f16", "u8"};
     static const uint8_t widths[] = {4, 2, 1};
     const uint8_t *p = bytes;
-    tyn_result r = tyn_volume_alloc(volume, size, file, log);
+    tyn_volume *volume = &job->volume;
+    tyn_result r = tyn_volume_alloc(volume, size, channels, file, job->log);
     if (r) {
         return r;
     }
-    uint64_t voxels = (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2];
-    if (num_bytes != voxels * widths[type]) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: has %zu bytes, a grid of %lld x %lld x %lld %s values has %llu", file,
+    job->channels = channels;
+    uint64_t values = (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2] * channels;
+    if (num_bytes != values * widths[type]) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "%s: has %zu bytes, a grid of %lld x %lld x %lld %s%s values has %llu", file,
                       num_bytes, (long long)size[0], (long long)size[1], (long long)size[2],
-                      names[type], (unsigned long long)(voxels * widths[type]));
+                      channels == 3 ? "triples of " : "", names[type],
+                      (unsigned long long)(values * widths[type]));
         tyn_volume_finish(volume);
         return TYN_ERR_PARAMS;
     }
-    for (uint64_t i = 0; i < voxels; i++, p += widths[type]) {
+    for (uint64_t i = 0; i < values; i++, p += widths[type]) {
         uint32_t word;
         switch (type) {
         case TYN_RAW_F32:
@@ -44,5 +47,16 @@ tyn_result tyn_raw_parse(tyn_volume *volume, const void *bytes, size_t num_bytes
             break;
         }
     }
-    return tyn_volume_seal(volume, file, NULL, clamped_negative, log);
+    return tyn_grid_seal(job, file, NULL);
+}
+
+tyn_result tyn_raw_parse(tyn_volume *volume, const void *bytes, size_t num_bytes,
+                         const int64_t size[3], tyn_raw_type type, const char *file,
+                         uint64_t *clamped_negative, const tyn_log *log)
+{
+    tyn_grid_job job = {.log = log};
+    const tyn_result r = tyn_raw_read(&job, bytes, num_bytes, size, 1, type, file);
+    *volume = job.volume;
+    *clamped_negative += job.clamped;
+    return r;
 }

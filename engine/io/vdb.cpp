@@ -1,5 +1,9 @@
 // vdb.cpp -- OpenVDB files. The one place that knows OpenVDB; no exception leaves it.
 #include "io/vdb.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <mutex>
@@ -11,14 +15,13 @@
 #include "io/vdb_check.h"
 extern "C" {
 #include "io/file.h"
-#include "io/volume.h"
 }
 
 namespace {
 
 struct entry {
     std::string name, type;
-    bool readable;
+    bool scalar, vector;
 };
 
 std::vector<entry> list_grids(openvdb::io::File &file)
@@ -28,59 +31,163 @@ std::vector<entry> list_grids(openvdb::io::File &file)
         openvdb::GridBase::Ptr meta = file.readGridMetadata(name.gridName());
         bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET;
         entries.push_back({name.gridName(), level_set ? "level set" : meta->valueType(),
-                           !level_set && meta->isType<openvdb::FloatGrid>()});
+                           !level_set && meta->isType<openvdb::FloatGrid>(),
+                           meta->isType<openvdb::Vec3SGrid>()});
     }
     return entries;
 }
 
-int choose(const std::vector<entry> &entries, const char *grid, const char *path,
-           const tyn_log *log)
+int choose(const std::vector<entry> &entries, tyn_grid_job *job, const char *path)
 {
     std::vector<const char *> names, types;
-    bool readable[1024] = {};
+    bool scalar[1024] = {}, vector[1024] = {};
     for (size_t i = 0; i < entries.size() && i < 1024; i++) {
         names.push_back(entries[i].name.c_str());
         types.push_back(entries[i].type.c_str());
-        readable[i] = entries[i].readable;
+        scalar[i] = entries[i].scalar;
+        vector[i] = entries[i].vector;
     }
-    return tyn_volume_choose(names.data(), types.data(), readable, uint32_t(names.size()), grid,
-                             path, log);
+    return tyn_volume_choose(job, names.data(), types.data(), scalar, vector,
+                             uint32_t(names.size()), path);
 }
 
-tyn_result copy_grid(tyn_volume *volume, const openvdb::FloatGrid &grid, const char *path,
-                     const tyn_log *log)
+// Index to world, column-major; `lo` is where an index of 0 is to be.
+void copy_map(double m[16], const openvdb::math::Transform &transform, const openvdb::Coord &lo)
 {
+    const openvdb::Vec3d origin = transform.indexToWorld(lo);
+    for (int axis = 0; axis < 3; axis++) {
+        openvdb::Coord step = lo;
+        step[axis] += 1;
+        const openvdb::Vec3d column = transform.indexToWorld(step) - origin;
+        for (int row = 0; row < 3; row++) {
+            m[axis * 4 + row] = column[row];
+            m[12 + row] = origin[row];
+        }
+    }
+    m[3] = m[7] = m[11] = 0;
+    m[15] = 1;
+}
+
+template <typename grid_type>
+tyn_result copy_grid(tyn_grid_job *job, const grid_type &grid, const char *path)
+{
+    typedef typename grid_type::ValueType value;
     const openvdb::math::Transform &transform = grid.transform();
     openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (box.empty()) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has no active voxels", path,
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has no active voxels", path,
                       grid.getName().c_str());
         return TYN_ERR_PARAMS;
     }
     if (!transform.isLinear()) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has a %s: must be affine", path,
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has a %s: must be affine", path,
                       grid.getName().c_str(), transform.mapType().c_str());
         return TYN_ERR_PARAMS;
     }
     const int64_t size[3] = {int64_t(box.max().x()) - box.min().x() + 1,
                              int64_t(box.max().y()) - box.min().y() + 1,
                              int64_t(box.max().z()) - box.min().z() + 1};
-    tyn_result r = tyn_volume_alloc(volume, size, path, log);
+    job->channels = sizeof(value) / sizeof(float);
+    tyn_result r = tyn_volume_alloc(&job->volume, size, job->channels, path, job->log);
     if (r) {
         return r;
     }
     // LayoutXYZ: x runs fastest. Copies inactive values as well.
-    openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(box, volume->data);
+    openvdb::tools::Dense<value, openvdb::tools::LayoutXYZ> dense(
+        box, reinterpret_cast<value *>(job->volume.data));
     openvdb::tools::copyToDense(grid, dense);
-    const openvdb::Vec3d origin = transform.indexToWorld(box.min());
-    for (int axis = 0; axis < 3; axis++) {
-        openvdb::Coord step = box.min();
-        step[axis] += 1;
-        const openvdb::Vec3d column = transform.indexToWorld(step) - origin;
-        for (int row = 0; row < 3; row++) {
-            volume->index_to_world[axis * 4 + row] = column[row];
-            volume->index_to_world[12 + row] = origin[row];
+    copy_map(job->volume.index_to_world, transform, box.min());
+    return TYN_OK;
+}
+
+// ---- what is in a file ------------------------------------------------------------------------
+
+void widen(tyn_volume_grid *g, bool *finite, double v)
+{
+    g->least = g->has_range ? std::min(g->least, v) : v; // NaN and infinity: find_range
+    g->most = g->has_range ? std::max(g->most, v) : v;
+    g->has_range = true;
+    *finite = *finite && std::isfinite(v);
+}
+
+template <typename number>
+void widen(tyn_volume_grid *g, bool *finite, const openvdb::math::Vec3<number> &v)
+{
+    for (int c = 0; c < 3; c++) {
+        widen(g, finite, double(v[c]));
+    }
+}
+
+// False: it is of another type.
+template <typename grid_type> bool find_range(tyn_volume_grid *g, const openvdb::GridBase &base)
+{
+    const grid_type *grid = dynamic_cast<const grid_type *>(&base);
+    if (grid) {
+        bool finite = true;
+        for (typename grid_type::ValueOnCIter it = grid->cbeginValueOn(); it; ++it) {
+            widen(g, &finite, it.getValue());
         }
+        g->has_range = g->has_range && finite;
+    }
+    return grid != nullptr;
+}
+
+// Types whose trees tyn_vdb_check has walked; of others what the writer has noted.
+bool is_walked(const openvdb::GridBase &grid)
+{
+    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>() ||
+           grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>() ||
+           grid.isType<openvdb::Vec3SGrid>() || grid.isType<openvdb::Vec3DGrid>() ||
+           grid.isType<openvdb::Vec3IGrid>();
+}
+
+void tell(tyn_volume_grid *g, openvdb::io::File &file, const std::string &name)
+{
+    openvdb::GridBase::Ptr grid = file.readGridMetadata(name);
+    openvdb::CoordBBox box;
+    if (is_walked(*grid)) {
+        grid = file.readGrid(name);
+        g->active_voxels = grid->activeVoxelCount();
+        box = grid->evalActiveVoxelBoundingBox();
+        find_range<openvdb::FloatGrid>(g, *grid) || find_range<openvdb::DoubleGrid>(g, *grid) ||
+            find_range<openvdb::Int32Grid>(g, *grid) || find_range<openvdb::Int64Grid>(g, *grid) ||
+            find_range<openvdb::Vec3SGrid>(g, *grid) || find_range<openvdb::Vec3DGrid>(g, *grid) ||
+            find_range<openvdb::Vec3IGrid>(g, *grid);
+    } else if (grid->getMetadata<openvdb::Int64Metadata>("file_voxel_count") &&
+               grid->getMetadata<openvdb::Vec3IMetadata>("file_bbox_min") &&
+               grid->getMetadata<openvdb::Vec3IMetadata>("file_bbox_max")) {
+        g->active_voxels = uint64_t(grid->metaValue<int64_t>("file_voxel_count"));
+        box = openvdb::CoordBBox(openvdb::Coord(grid->metaValue<openvdb::Vec3i>("file_bbox_min")),
+                                 openvdb::Coord(grid->metaValue<openvdb::Vec3i>("file_bbox_max")));
+    }
+    std::snprintf(g->name, sizeof g->name, "%s", name.c_str());
+    std::snprintf(g->type, sizeof g->type, "%s", grid->valueType().c_str());
+    std::snprintf(g->grid_class, sizeof g->grid_class, "%s",
+                  openvdb::GridBase::gridClassToString(grid->getGridClass()).c_str());
+    for (int a = 0; a < 3; a++) {
+        g->lo[a] = box.min()[a];
+        g->hi[a] = box.max()[a];
+    }
+    g->affine = grid->transform().isLinear();
+    if (g->affine) {
+        copy_map(g->index_to_world, grid->transform(), openvdb::Coord(0, 0, 0));
+    }
+    tyn_volume_grid_place(g);
+}
+
+tyn_result tell_all(tyn_grid_job *job, openvdb::io::File &file, const char *path)
+{
+    std::vector<std::string> names;
+    for (openvdb::io::File::NameIterator name = file.beginName(); name != file.endName(); ++name) {
+        names.push_back(name.gridName());
+    }
+    job->list = static_cast<tyn_volume_grid *>(std::calloc(names.size() + 1, sizeof *job->list));
+    if (!job->list) {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no memory to list its grids", path);
+        return TYN_ERR_MEMORY;
+    }
+    for (const std::string &name : names) {
+        tell(&job->list[job->num_list++], file, name);
     }
     return TYN_OK;
 }
@@ -99,53 +206,74 @@ tyn_result check(const char *path, const tyn_log *log)
     return whole ? TYN_OK : TYN_ERR_PARAMS;
 }
 
-tyn_result load(tyn_volume *volume, const char *path, const char *grid, uint64_t *clamped,
-                const tyn_log *log)
+tyn_result load(tyn_grid_job *job, const char *path)
 {
     static std::once_flag once; // registers the library's own types
     std::call_once(once, openvdb::initialize);
     openvdb::io::File file(path);
     file.open(false);
+    if (job->use == TYN_GRID_LIST) {
+        return tell_all(job, file, path);
+    }
     std::vector<entry> entries = list_grids(file);
-    int chosen = choose(entries, grid, path, log);
+    int chosen = choose(entries, job, path);
     if (chosen < 0) {
         return TYN_ERR_PARAMS;
     }
     const std::string &name = entries[size_t(chosen)].name;
-    openvdb::FloatGrid::Ptr found = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));
-    if (!found) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: grid \"%.100s\" does not hold floats", path,
+    openvdb::GridBase::Ptr found = file.readGrid(name);
+    openvdb::FloatGrid::Ptr floats = openvdb::gridPtrCast<openvdb::FloatGrid>(found);
+    openvdb::Vec3SGrid::Ptr vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(found);
+    tyn_result r = TYN_ERR_PARAMS;
+    if (floats) {
+        r = copy_grid(job, *floats, path);
+    } else if (vectors && job->use == TYN_GRID_COLOR) {
+        r = copy_grid(job, *vectors, path);
+    } else {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: grid \"%.100s\" does not hold floats", path,
                       name.c_str());
-        return TYN_ERR_PARAMS;
     }
-    tyn_result r = copy_grid(volume, *found, path, log);
-    return r ? r : tyn_volume_seal(volume, path, name.c_str(), clamped, log);
+    return r ? r : tyn_grid_seal(job, path, name.c_str());
 }
 
 } // namespace
 
-tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
-                        uint64_t *clamped_negative, const tyn_log *log)
+tyn_result tyn_vdb_read(tyn_grid_job *job, const char *path)
 {
     tyn_result r = TYN_ERR_PARAMS;
-    std::memset(volume, 0, sizeof *volume);
-    tyn_result checked = check(path, log);
+    std::memset(&job->volume, 0, sizeof job->volume);
+    tyn_result checked = check(path, job->log);
     if (checked) {
         return checked;
     }
     try {
-        return load(volume, path, grid, clamped_negative, log);
+        return load(job, path);
     } catch (const std::bad_alloc &) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to read it", path);
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no memory to read it", path);
         r = TYN_ERR_MEMORY;
     } catch (const std::exception &e) {
         std::string what = e.what();
         for (char &c : what) {
             c = c == '\n' ? ' ' : c;
         }
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: not a .vdb file that can be read: %.300s", path,
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: not a .vdb file that can be read: %.300s", path,
                       what.c_str());
     }
-    tyn_volume_finish(volume);
+    tyn_volume_finish(&job->volume);
+    std::free(job->list);
+    job->list = nullptr;
+    job->num_list = 0;
+    return r;
+}
+
+tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
+                        uint64_t *clamped_negative, const tyn_log *log)
+{
+    tyn_grid_job job = {};
+    job.grid = grid;
+    job.log = log;
+    const tyn_result r = tyn_vdb_read(&job, path);
+    *volume = job.volume;
+    *clamped_negative += job.clamped;
     return r;
 }

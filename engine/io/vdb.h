@@ -1,11 +1,13 @@
 // vdb.h -- OpenVDB files (.vdb): vdb.cpp where the build has OpenVDB, else vdb_off.c.
 #pragma once
-#include <tyndall/io.h>
+#include "io/volume.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+tyn_result tyn_vdb_read(tyn_grid_job *job, const char *path);
+// A density by itself.
 tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
                         uint64_t *clamped_negative, const tyn_log *log);
 

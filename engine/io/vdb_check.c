@@ -3,7 +3,7 @@
 // OpenVDB believes every length and count of a file: a few changed bytes have it read for ever or take all memory, and
 // Blosc is not told where its input ends. Here all of them are held against the bytes that are left. The order is that
 // of OpenVDB 10: io/Archive.cc, MetaMap.cc, math/Maps.h, and readTopology and readBuffers of tree/RootNode.h,
-// InternalNode.h and LeafNode.h. Trees that are not of floats are walked only where nothing else says where they end.
+// InternalNode.h and LeafNode.h. Trees of other types than are listed here are not read, and not walked.
 #include "io/vdb_check.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -406,7 +406,7 @@ static void walk_grid(walk *w, bool has_offsets)
     walk_metadata(w);
     walk_transform(w, false);
     const value_type *t = find_type(type);
-    if (!parent[0] && t && (t == value_types || !has_offsets)) {
+    if (!parent[0] && t) {
         walk_tree(w, t);
     } else if (!parent[0] && !t && !has_offsets) {
         fail(w, "has a grid that nothing says the end of, of a type that is not read: ", type);

@@ -1,13 +1,19 @@
 // vdb_off.c -- stands in for vdb.cpp in builds without OpenVDB.
 #include "io/vdb.h"
 
-tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
-                        uint64_t *clamped_negative, const tyn_log *log)
+tyn_result tyn_vdb_read(tyn_grid_job *job, const char *path)
 {
-    (void)volume, (void)grid, (void)clamped_negative;
-    tyn_log_print(log, TYN_LOG_ERROR,
+    tyn_log_print(job->log, TYN_LOG_ERROR,
                   "%s: this build cannot read .vdb files: build with -Dopenvdb=enabled (needs "
                   "OpenVDB), or convert the file to .nvdb",
                   path);
     return TYN_ERR_UNSUPPORTED;
+}
+
+tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
+                        uint64_t *clamped_negative, const tyn_log *log)
+{
+    (void)volume, (void)clamped_negative;
+    tyn_grid_job job = {.grid = grid, .log = log};
+    return tyn_vdb_read(&job, path);
 }

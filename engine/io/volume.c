@@ -20,8 +20,8 @@ void tyn_volume_finish(tyn_volume *volume)
     }
 }
 
-tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], const char *file,
-                            const tyn_log *log)
+tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t channels,
+                            const char *file, const tyn_log *log)
 {
     uint64_t voxels = 1;
     memset(volume, 0, sizeof *volume);
@@ -35,15 +35,15 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], const cha
         voxels *= (uint64_t)size[a];
         volume->size[a] = (uint32_t)size[a];
     }
-    if (voxels > TYN_MAX_VOXELS) {
+    if (voxels > TYN_MAX_VOXELS / channels) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "%s: grid of %lld x %lld x %lld voxels: at most %llu in all (it is stored "
                       "dense); resample it coarser",
                       file, (long long)size[0], (long long)size[1], (long long)size[2],
-                      (unsigned long long)TYN_MAX_VOXELS);
+                      (unsigned long long)(TYN_MAX_VOXELS / channels));
         return TYN_ERR_PARAMS;
     }
-    volume->data = calloc((size_t)voxels, sizeof *volume->data);
+    volume->data = calloc((size_t)voxels * channels, sizeof *volume->data);
     if (!volume->data) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for %llu voxels", file,
                       (unsigned long long)voxels);
@@ -53,28 +53,35 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], const cha
     return TYN_OK;
 }
 
-tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
-                           uint64_t *clamped_negative, const tyn_log *log)
+static const char *use_name(tyn_grid_use use)
 {
-    uint64_t voxels = (uint64_t)volume->size[0] * volume->size[1] * volume->size[2];
-    uint64_t negative = 0;
+    return use == TYN_GRID_DENSITY ? "density" : use == TYN_GRID_COLOR ? "colour" : "value";
+}
+
+tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid)
+{
+    tyn_volume *volume = &job->volume;
+    const uint64_t voxels = (uint64_t)volume->size[0] * volume->size[1] * volume->size[2];
+    const uint64_t count = voxels * job->channels;
     float most = 0.0f;
-    for (uint64_t i = 0; i < voxels; i++) {
-        float density = volume->data[i];
-        if (!isfinite(density)) {
-            uint64_t x = i % volume->size[0], y = i / volume->size[0] % volume->size[1];
-            uint64_t z = i / volume->size[0] / volume->size[1];
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "%s: density %g at voxel %llu, %llu, %llu: must be finite", file, density,
-                          (unsigned long long)x, (unsigned long long)y, (unsigned long long)z);
+    for (uint64_t i = 0; i < count; i++) {
+        const float value = volume->data[i];
+        if (!isfinite(value)) {
+            const uint64_t v = i / job->channels, x = v % volume->size[0];
+            const uint64_t y = v / volume->size[0] % volume->size[1];
+            const uint64_t z = v / volume->size[0] / volume->size[1];
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "%s: %s %g at voxel %llu, %llu, %llu: must be finite", file,
+                          use_name(job->use), value, (unsigned long long)x, (unsigned long long)y,
+                          (unsigned long long)z);
             tyn_volume_finish(volume);
             return TYN_ERR_PARAMS;
         }
-        if (density < 0.0f) {
-            negative++;
+        if (value < 0.0f && job->use != TYN_GRID_VALUE) {
+            job->clamped++;
             volume->data[i] = 0.0f;
-        } else if (density > most) {
-            most = density;
+        } else if (value > most) {
+            most = value;
         }
     }
     for (int i = 0; i < 16; i++) {
@@ -82,10 +89,9 @@ tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *gri
             mat_identity(volume->index_to_world);
         }
     }
-    *clamped_negative += negative;
     volume->max_density = most;
     volume->hash = tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, volume->size, sizeof volume->size),
-                                  volume->data, (size_t)voxels * sizeof *volume->data);
+                                  volume->data, (size_t)count * sizeof *volume->data);
     size_t room = strlen(file) + (grid ? strlen(grid) : 0) + 4;
     volume->name = malloc(room);
     if (volume->name) {
@@ -94,41 +100,47 @@ tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *gri
     return TYN_OK;
 }
 
-int tyn_volume_choose(const char *const *names, const char *const *types, const bool *readable,
-                      uint32_t count, const char *grid, const char *file, const tyn_log *log)
+tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
+                           uint64_t *clamped_negative, const tyn_log *log)
 {
-    const char *wanted = grid ? grid : "density";
-    char list[512] = "";
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(names[i], wanted) == 0 && (readable[i] || grid)) {
-            if (readable[i]) {
-                return (int)i;
-            }
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "%s: grid \"%.100s\" holds %s values: must be float, half or quantised "
-                          "float",
-                          file, names[i], types[i]);
-            return -1;
+    tyn_grid_job job = {.volume = *volume, .channels = 1, .log = log};
+    const tyn_result r = tyn_grid_seal(&job, file, grid);
+    *volume = job.volume;
+    *clamped_negative += job.clamped;
+    return r;
+}
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, extension) == 0;
+}
+
+tyn_result tyn_grid_read(tyn_grid_job *job, const char *path)
+{
+    if (has_extension(path, ".nvdb")) {
+        void *bytes;
+        size_t size;
+        tyn_result r = tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &size, job->log);
+        if (!r) {
+            r = tyn_nvdb_read(job, bytes, size, path);
+            free(bytes);
         }
+        return r;
     }
-    for (uint32_t i = 0; i < count && !grid; i++) {
-        if (readable[i]) {
-            return (int)i;
-        }
+    if (has_extension(path, ".vdb")) {
+        return tyn_vdb_read(job, path);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s\"%.60s\" (%s)", i ? ", " : "", names[i],
-                 types[i]);
+    if (has_extension(path, ".raw")) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "%s: a .raw file does not say its size: give \"size\" and \"type\" in a "
+                      "glTF scene",
+                      path);
+        return TYN_ERR_PARAMS;
     }
-    if (grid) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no grid \"%.100s\": there are %s", file, grid,
-                      count ? list : "none");
-    } else {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no grid of float values: there are %s", file,
-                      count ? list : "none");
-    }
-    return -1;
+    tyn_log_print(job->log, TYN_LOG_ERROR,
+                  "%s: unknown kind of volume: must be .nvdb, .vdb or .raw", path);
+    return TYN_ERR_PARAMS;
 }
 
 tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
@@ -137,31 +149,11 @@ tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *gri
     if (!TYN_GIVEN(log, volume, path)) {
         return TYN_ERR_PARAMS;
     }
-    const char *dot = strrchr(path, '.');
-    uint64_t ignored = 0;
-    uint64_t *clamped = clamped_negative ? clamped_negative : &ignored;
-    memset(volume, 0, sizeof *volume);
-    if (dot && strcasecmp(dot, ".nvdb") == 0) {
-        void *bytes;
-        size_t size;
-        tyn_result r = tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &size, log);
-        if (!r) {
-            r = tyn_nvdb_parse(volume, bytes, size, grid, path, clamped, log);
-            free(bytes);
-        }
-        return r;
+    tyn_grid_job job = {.grid = grid, .log = log};
+    const tyn_result r = tyn_grid_read(&job, path);
+    *volume = job.volume;
+    if (clamped_negative) {
+        *clamped_negative += job.clamped;
     }
-    if (dot && strcasecmp(dot, ".vdb") == 0) {
-        return tyn_vdb_load(volume, path, grid, clamped, log);
-    }
-    if (dot && strcasecmp(dot, ".raw") == 0) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: a .raw file does not say its size: give \"size\" and \"type\" in a "
-                      "glTF scene",
-                      path);
-        return TYN_ERR_PARAMS;
-    }
-    tyn_log_print(log, TYN_LOG_ERROR, "%s: unknown kind of volume: must be .nvdb, .vdb or .raw",
-                  path);
-    return TYN_ERR_PARAMS;
+    return r;
 }

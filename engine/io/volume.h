@@ -1,6 +1,10 @@
-// volume.h -- what the readers of density grids share.
+// volume.h -- what the readers of grids share.
 #pragma once
 #include <tyndall/io.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 // Files are read whole; a grid is stored dense. Fuzzers look for wrong accesses, not for big grids.
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
@@ -10,17 +14,64 @@
 #endif
 #define TYN_MAX_FILE_BYTES (1ull << 34)
 
-// Allocates zeroed data for a grid; faults are one line that names `file`.
-tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], const char *file,
-                            const tyn_log *log);
+// What a grid is read for.
+typedef enum tyn_grid_use {
+    TYN_GRID_DENSITY = 0, // scalars; negative ones are set to 0
+    TYN_GRID_VALUE,       // scalars of any sign, as temperatures in degrees Celsius are
+    TYN_GRID_COLOR,       // scalars or vectors; negative values are set to 0
+    TYN_GRID_LIST,        // nothing is read: what is there is told
+} tyn_grid_use;
+
+// A grid that is asked for, and what comes of it.
+typedef struct tyn_grid_job {
+    const char *grid; // its name; NULL: a density is looked for (tyn_volume_choose)
+    tyn_grid_use use;
+    uint32_t used;      // bits of tyn_grid_role: grids that are read as well, and not left out
+    bool guessed;       // of several grids one was taken whose name says nothing
+    tyn_volume volume;  // data has `channels` values a voxel
+    uint32_t channels;  // 1 or 3
+    uint64_t clamped;   // negative values that were set to 0
+    char left_out[400]; // what else is in the file and is nobody's density, in words; "": nothing
+    tyn_volume_grid *list; // LIST: of all grids, from malloc
+    uint32_t num_list;
+    const tyn_log *log;
+} tyn_grid_job;
+
+// Reads a grid of a .nvdb or .vdb file. Nothing is left in `job` after a fault.
+tyn_result tyn_grid_read(tyn_grid_job *job, const char *path);
+
+// Allocates zeroed data for a grid of `channels` values a voxel; faults are one line that names `file`.
+tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t channels,
+                            const char *file, const tyn_log *log);
 
 // After data is filled: refuses non-finite values, clamps and counts negative ones, finds the
-// maximum, hashes, names the volume.
+// maximum, hashes, names the volume. Uses other than DENSITY: as tyn_grid_use says.
 tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
                            uint64_t *clamped_negative, const tyn_log *log);
+tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid);
 
-// Chooses among the grids of a file, those that are readable as density. `grid` NULL = "density",
-// else the first readable one. Returns its index, or -1 after one line that lists the grids there
-// are.
-int tyn_volume_choose(const char *const *names, const char *const *types, const bool *readable,
-                      uint32_t count, const char *grid, const char *file, const tyn_log *log);
+// What a grid is by its name: density, temperature, velocity, ...
+typedef enum tyn_grid_role {
+    TYN_ROLE_UNKNOWN = 0,
+    TYN_ROLE_DENSITY,
+    TYN_ROLE_HEAT,     // temperatures, flames, fuel
+    TYN_ROLE_EMISSION, //
+    TYN_ROLE_COLOR,
+    TYN_ROLE_VELOCITY,
+    TYN_ROLE_OTHER, // pressure, distances, ...
+} tyn_grid_role;
+tyn_grid_role tyn_grid_role_of(const char *name);
+
+// Chooses among the grids of a file. With a name: that one, if it can be read for the use (`scalar`, `vector`: whether it
+// is one of numbers or of vectors that can be read). Without: "density", else a name that means one, else the first
+// whose name means nothing else: a temperature or a velocity is never taken for a density. Returns its index, or -1 after
+// one line that lists the grids there are and says what would be right. `job->left_out` tells of the others.
+int tyn_volume_choose(tyn_grid_job *job, const char *const *names, const char *const *types,
+                      const bool *scalar, const bool *vector, uint32_t count, const char *file);
+
+// Voxel sizes and the box in the world, from index_to_world and the box of indices.
+void tyn_volume_grid_place(tyn_volume_grid *grid);
+
+#ifdef __cplusplus
+}
+#endif

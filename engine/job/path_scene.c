@@ -72,7 +72,8 @@ static bool has_grids(const tyn_job *job)
 {
     const tyn_scene *scene = job->scene;
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
-        if (scene->media[scene->shapes[i].medium].volume >= 0) {
+        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
+        if (m->volume >= 0 || m->emission_grid || m->radiance_grid || m->albedo_grid) {
             return true;
         }
     }
@@ -127,13 +128,17 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
     p->num_shapes = frame->empty ? 1 : m->num_shapes;
     p->sphere = sphere && p->num_shapes == 1;
     p->grey = 1;
+    p->glow = p->albedo = 0;
     float sigma_t = 0;
     for (uint32_t i = 0; i < m->num_shapes; i++) {
         const struct shape_block *s = &frame->shapes[i];
         p->grey =
             p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && tyn_phase_is_grey(s->phase);
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
+        p->glow |= s->colors[TYN_COLORS_EMISSION].size[0] || s->colors[TYN_COLORS_RADIANCE].size[0];
+        p->albedo |= s->colors[TYN_COLORS_ALBEDO].size[0] > 0;
     }
+    p->grey = p->grey && !p->albedo;
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
@@ -177,4 +182,5 @@ void tyn_connect_path_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
     tyn_connect(refs, SCENE_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, SCENE_PORT_MATERIALS, job->refs.materials);
     refs[SCENE_PORT_EMITTERS] = job->refs.emitters;
+    refs[SCENE_PORT_COLORS] = job->refs.colors;
 }

@@ -150,6 +150,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
                        "the medium, and send none into it"
                      : "send no light into the medium");
     }
+    if (job->frame->emissive) {
+        tyn_job_warn(job, "emission is seen, but does not light the medium");
+    }
     tyn_limits_warn(job, 0);
     tyn_add_medium(g, job, &s);
     tyn_add_shadows(g, job, &s);

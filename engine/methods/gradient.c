@@ -74,6 +74,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_add_shadows(g, job, &s);
     if (!frame->empty && has_light(frame)) {
         const float *e = frame->medium.extent;
+        if (job->frame->emissive) {
+            tyn_job_warn(job, "emission is seen, but does not light the medium");
+        }
         tyn_limits_warn(job, fmaxf(e[0], fmaxf(e[1], e[2])) / 32); // as the limits count cells
         add_field(g, job, &s, &field);
     }

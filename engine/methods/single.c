@@ -39,6 +39,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     if (mean[0] + mean[1] + mean[2] > 0.0f) {
         tyn_job_warn(job, "the environment is seen, but does not light the medium");
     }
+    if (job->frame->emissive) {
+        tyn_job_warn(job, "emission is seen, but does not light the medium");
+    }
     tyn_job_warn_suns(job, "the medium");
     tyn_add_medium(g, job, &s);
     tyn_add_beams(g, job, &s);

@@ -47,6 +47,38 @@ static tyn_result check_volume(const tyn_volume *volume, uint32_t i, const tyn_l
     return TYN_OK;
 }
 
+static tyn_result check_color_grid(const tyn_color_grid *grid, uint32_t i, const tyn_log *log)
+{
+    for (int a = 0; a < 3; a++) {
+        if (grid->size[a] < 1 || grid->size[a] > 65536) {
+            FAULT("color_grids[%u].size[%d] = %u: must be 1 to 65536 voxels", i, a, grid->size[a]);
+        }
+    }
+    if (grid->channels != 1 && grid->channels != 3) {
+        FAULT("color_grids[%u].channels = %u: must be 1 or 3", i, grid->channels);
+    }
+    if (!grid->data) {
+        FAULT("color_grids[%u].data = NULL: required", i);
+    }
+    if (!isfinite(grid->max) || grid->max < 0.0f) {
+        FAULT("color_grids[%u].max = %g: must be >= 0 and finite", i, grid->max);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_colors(const tyn_color_grid *grid, uint32_t i, const tyn_log *log)
+{
+    uint64_t values = (uint64_t)grid->size[0] * grid->size[1] * grid->size[2] * grid->channels;
+    for (uint64_t v = 0; v < values; v++) {
+        float value = grid->data[v];
+        if (!(value >= 0.0f && value <= grid->max)) {
+            FAULT("color_grids[%u].data[%llu] = %g: must be between 0 and max = %g", i,
+                  (unsigned long long)v, value, grid->max);
+        }
+    }
+    return TYN_OK;
+}
+
 static tyn_result check_densities(const tyn_volume *volume, uint32_t i, const tyn_log *log)
 {
     uint64_t voxels = (uint64_t)volume->size[0] * volume->size[1] * volume->size[2];
@@ -56,6 +88,28 @@ static tyn_result check_densities(const tyn_volume *volume, uint32_t i, const ty
             FAULT("volumes[%u].data[%llu] = %g: density must be between 0 and max_density = %g", i,
                   (unsigned long long)v, density, volume->max_density);
         }
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_medium_grids(const tyn_scene *scene, uint32_t i, const tyn_log *log)
+{
+    const tyn_medium *m = &scene->media[i];
+    const struct {
+        const char *name;
+        uint32_t grid;
+    } slots[] = {{"emission_grid", m->emission_grid},
+                 {"radiance_grid", m->radiance_grid},
+                 {"albedo_grid", m->albedo_grid}};
+    for (int k = 0; k < 3; k++) {
+        if (slots[k].grid > scene->num_color_grids) {
+            FAULT("media[%u].%s = %u: there are %u color_grids (1 is the first, 0 = none)", i,
+                  slots[k].name, slots[k].grid, scene->num_color_grids);
+        }
+    }
+    if (m->albedo_grid && scene->color_grids[m->albedo_grid - 1].max > 1.0f) {
+        FAULT("media[%u].albedo_grid: color_grids[%u].max = %g: an albedo must be 0 to 1", i,
+              m->albedo_grid - 1, scene->color_grids[m->albedo_grid - 1].max);
     }
     return TYN_OK;
 }
@@ -197,6 +251,9 @@ static tyn_result check_arrays(const tyn_scene *scene, const tyn_log *log)
     if (scene->num_volumes && !scene->volumes) {
         FAULT("volumes = NULL, but there are to be %u", scene->num_volumes);
     }
+    if (scene->num_color_grids && !scene->color_grids) {
+        FAULT("color_grids = NULL, but there are to be %u", scene->num_color_grids);
+    }
     if (scene->num_cameras && !scene->cameras) {
         FAULT("cameras = NULL, but there are to be %u", scene->num_cameras);
     }
@@ -217,8 +274,12 @@ tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
     for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
         r = check_volume(&scene->volumes[i], i, log);
     }
+    for (uint32_t i = 0; !r && i < scene->num_color_grids; i++) {
+        r = check_color_grid(&scene->color_grids[i], i, log);
+    }
     for (uint32_t i = 0; !r && i < scene->num_media; i++) {
         r = check_medium(scene, i, log);
+        r = r ? r : check_medium_grids(scene, i, log);
     }
     for (uint32_t i = 0; !r && i < scene->num_shapes; i++) {
         r = check_shape(scene, i, log);
@@ -237,6 +298,9 @@ tyn_result tyn_scene_check_data(const tyn_scene *scene, const tyn_log *log)
     tyn_result r = TYN_OK;
     for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
         r = check_densities(&scene->volumes[i], i, log);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_color_grids; i++) {
+        r = check_colors(&scene->color_grids[i], i, log);
     }
     return r ? r : check_texels(&scene->environment, log);
 }

@@ -32,6 +32,10 @@ void tyn_scene_finish(tyn_scene *scene)
         free(scene->volumes[i].name);
         free(scene->volumes[i].data);
     }
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        free(scene->color_grids[i].name);
+        free(scene->color_grids[i].data);
+    }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         free(scene->media[i].name);
     }
@@ -48,6 +52,7 @@ void tyn_scene_finish(tyn_scene *scene)
     free(scene->name);
     free(scene->generator);
     free(scene->volumes);
+    free(scene->color_grids);
     free(scene->cameras);
     free(scene->warnings);
     free(scene->environment.data);
@@ -74,6 +79,9 @@ void tyn_medium_clear(tyn_medium *medium)
 {
     for (int c = 0; medium && c < 3; c++) {
         medium->sigma_s[c] = medium->sigma_a[c] = medium->emission[c] = 0.0f;
+    }
+    if (medium) {
+        medium->emission_grid = medium->radiance_grid = medium->albedo_grid = 0;
     }
 }
 
@@ -175,6 +183,9 @@ tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *overr
                 medium->sigma_s[c] = sigma_t * o->albedo[c];
                 medium->sigma_a[c] = sigma_t - medium->sigma_s[c];
             }
+        }
+        if (o->albedo) {
+            medium->albedo_grid = 0;
         }
         if (o->density_scale > 0.0f) {
             medium->density_scale = o->density_scale;

@@ -1,10 +1,11 @@
 // medium.comp -- all shapes resampled to voxels: the mean texture value (built with TYN_DENSITY, for that mode), or
-// summed coefficients.
+// summed coefficients; with grids of colours (TYN_COLORS) what varies by them is averaged as a product.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
+#define COLORS 6
 #include "shaders/phase/phase.glsl"
 #include "medium_shapes.glsl"
 #include "medium_args.h"
@@ -40,10 +41,15 @@ void main()
 #else
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), weighted = vec3(0.0);
     for (uint i = 0u; i < medium.num_shapes; i++) {
+#ifdef TYN_COLORS
+        mat3 means = shape_means(shapes[i], p, int(args.samples));
+#else
         float value = shape_mean(shapes[i], p, int(args.samples));
-        sigma_s += value * shapes[i].sigma_s;
-        sigma_a += value * shapes[i].sigma_a;
-        weighted += value * shapes[i].sigma_s * phase_mean_cosine(shapes[i].phase);
+        mat3 means = mat3(value * shapes[i].sigma_s, value * shapes[i].sigma_a, vec3(0.0));
+#endif
+        sigma_s += means[0];
+        sigma_a += means[1];
+        weighted += means[0] * phase_mean_cosine(shapes[i].phase);
     }
     vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
     float mean_s = mean_of(sigma_s);

@@ -4,6 +4,7 @@
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
+#define COLORS 4
 #include "medium_shapes.glsl"
 #include "medium_args.h"
 #include "medium_bricks.glsl"

@@ -4,6 +4,7 @@
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
+#define COLORS 4
 #include "medium_shapes.glsl"
 #include "medium_args.h"
 
@@ -20,9 +21,15 @@ void main()
     vec3 p = (vec3(voxel) + 0.5) * medium.voxel;
     vec3 emission = vec3(0.0);
     for (uint i = 0u; i < medium.num_shapes; i++) {
+#ifdef TYN_COLORS
+        if (any(greaterThan(shapes[i].emission, vec3(0.0))) || shape_has_color(shapes[i], TYN_COLORS_RADIANCE)) {
+            emission += shape_means(shapes[i], p, int(args.samples))[2];
+        }
+#else
         if (any(greaterThan(shapes[i].emission, vec3(0.0)))) {
             emission += shape_mean(shapes[i], p, int(args.samples)) * shapes[i].emission;
         }
+#endif
     }
     float mean = (emission.x + emission.y + emission.z) / 3.0;
     imageStore(emission_image, ivec3(voxel), vec4(emission, mean));

@@ -1,7 +1,8 @@
 // medium_shapes.glsl -- the exact media: shapes with grids in the atlas, averaged over a voxel or bounded
 // over a box.
 //
-// Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including.
+// Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including; in the builds
+// with TYN_COLORS, for media with grids of colours, also COLORS (sampler3D).
 #ifndef TYN_MEDIUM_SHAPES_GLSL
 #define TYN_MEDIUM_SHAPES_GLSL
 #include "shaders/common/scene_args.h"
@@ -64,6 +65,14 @@ bool shape_contains(shape_block s, vec3 local, vec3 local_half)
                                         : dot(farthest, farthest) <= 0.25;
 }
 
+// Texels of a grid along a voxel, at least 1 and at most `most`.
+int shape_texels(shape_block s, uvec3 size, int most)
+{
+    vec3 texels = vec3(size) * vec3(length(s.rows[0].xyz * medium.voxel), length(s.rows[1].xyz * medium.voxel),
+                                    length(s.rows[2].xyz * medium.voxel));
+    return clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, most);
+}
+
 // Mean over the voxel around p of the texture value, 0 outside the shape. `samples` per axis where the
 // voxel is on the shape's edge; inside, as many as it has texels.
 float shape_mean(shape_block s, vec3 p, int samples)
@@ -74,13 +83,7 @@ float shape_mean(shape_block s, vec3 p, int samples)
         return 0.0;
     }
     bool inside = shape_contains(s, centre, local_half);
-    int n = samples;
-    if (inside) {
-        vec3 texels = vec3(s.size) * vec3(length(s.rows[0].xyz * medium.voxel),
-                                          length(s.rows[1].xyz * medium.voxel),
-                                          length(s.rows[2].xyz * medium.voxel));
-        n = clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, samples);
-    }
+    int n = inside ? shape_texels(s, s.size, samples) : samples;
     vec3 half_box = 0.5 * medium.voxel / float(n);
     vec3 sub_half = local_half / float(n);
     // Steps between samples are linear in local coordinates.
@@ -103,6 +106,64 @@ float shape_mean(shape_block s, vec3 p, int samples)
     }
     return sum / float(n * n * n);
 }
+
+#ifdef TYN_COLORS
+layout(set = 0, binding = COLORS) uniform sampler3D colors_tex;
+
+bool shape_has_color(shape_block s, uint which)
+{
+    return s.colors[which].size.x > 0u;
+}
+
+// A grid of colours (TYN_COLORS_*) at a local position; outside the shape its edge value.
+vec3 shape_color(shape_block s, uint which, vec3 local)
+{
+    shape_colors c = s.colors[which];
+    vec3 size = vec3(c.size);
+    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(0.0, 0.0, float(c.layer));
+    return c.scale * textureLod(colors_tex, texel / vec3(textureSize(colors_tex, 0)), 0.0).rgb;
+}
+
+// Means over the voxel around p, 0 outside the shape: sigma_s, sigma_a, emission.
+mat3 shape_means(shape_block s, vec3 p, int samples)
+{
+    vec3 centre = shape_local(s, p);
+    vec3 local_half = shape_local_half(s, 0.5 * medium.voxel);
+    mat3 sum = mat3(0.0);
+    if (shape_misses(s, centre, local_half)) {
+        return sum;
+    }
+    bool inside = shape_contains(s, centre, local_half);
+    if (inside) { // of the finest grid
+        uvec3 finest = max(max(s.size, s.colors[0].size), max(s.colors[1].size, s.colors[2].size));
+        samples = shape_texels(s, finest, samples);
+    }
+    vec3 half_box = 0.5 * medium.voxel / float(samples);
+    mat3 to_local = mat3(s.rows[0].xyz, s.rows[1].xyz, s.rows[2].xyz);
+    for (int i = 0; i < samples * samples * samples; i++) {
+        ivec3 at = ivec3(i % samples, i / samples % samples, i / (samples * samples));
+        vec3 local = centre + (vec3(2 * at - (samples - 1)) * half_box) * to_local;
+        float cover = inside ? 1.0 : shape_cover(s, local, local_half / float(samples), half_box);
+        if (!(cover > 0.0)) {
+            continue;
+        }
+        float density = shape_value(s, local);
+        vec3 t = density * (s.sigma_s + s.sigma_a), scattered = density * s.sigma_s;
+        if (shape_has_color(s, TYN_COLORS_ALBEDO)) {
+            scattered = t * shape_color(s, TYN_COLORS_ALBEDO, local);
+        }
+        vec3 emission = density * s.emission;
+        if (shape_has_color(s, TYN_COLORS_EMISSION)) {
+            emission = s.emission * shape_color(s, TYN_COLORS_EMISSION, local);
+        }
+        if (shape_has_color(s, TYN_COLORS_RADIANCE)) {
+            emission += (t - scattered) * shape_color(s, TYN_COLORS_RADIANCE, local);
+        }
+        sum += cover * mat3(scattered, t - scattered, emission);
+    }
+    return sum / float(samples * samples * samples);
+}
+#endif
 
 // Mode DENSITY: how many times the block's coefficients this shape's are at atlas value 1.
 float shape_scale(shape_block s)

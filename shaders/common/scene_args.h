@@ -44,6 +44,18 @@ struct medium_block { // uniform buffer "medium"
 };
 TYN_ASSERT_SIZE(medium_block, 124 + 3 * sizeof(tyn_phase));
 
+// Grids of colours of a shape, each with a place in the texture "colors".
+#define TYN_COLORS_EMISSION 0 // `emission` is multiplied with it in place of the density
+#define TYN_COLORS_RADIANCE 1 // of black bodies: the absorption times it is emitted as well, W/(m^2 sr)
+#define TYN_COLORS_ALBEDO 2   // sigma_s over sigma_s + sigma_a, in place of the coefficients' own
+#define TYN_COLORS_NUM 3
+struct shape_colors {
+    tyn_uvec3 size; // voxels; 0, 0, 0: there is none
+    tyn_uint layer; // first z of the texture
+    float scale;    // multiplies its texels, which are 0 to 1
+};
+TYN_ASSERT_SIZE(shape_colors, 20);
+
 struct shape_block { // element of storage buffer "shapes": the exact media, as `path` reads them
     // M -> local unit box [-0.5, 0.5]^3: local_i = dot(rows[i].xyz, p) + rows[i].w.
     tyn_vec4 rows[3];
@@ -57,8 +69,9 @@ struct shape_block { // element of storage buffer "shapes": the exact media, as 
     tyn_vec3 sigma_a;
     tyn_phase phase[3]; // of each channel
     tyn_vec3 emission;
+    TYN_STRUCT(shape_colors) colors[TYN_COLORS_NUM];
 };
-TYN_ASSERT_SIZE(shape_block, 116 + 3 * sizeof(tyn_phase));
+TYN_ASSERT_SIZE(shape_block, 176 + 3 * sizeof(tyn_phase));
 
 struct camera_block { // uniform buffer "camera"
     tyn_vec3 origin;  // M, m

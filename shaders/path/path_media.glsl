@@ -1,7 +1,7 @@
 // path_media.glsl -- the media exactly as the scene says, for the path tracer: every shape's own grid,
 // sums where shapes overlap.
 //
-// The includer declares `medium` (medium_block), `shapes[]` (shape_block), `atlas` (sampler3D), `bricks`
+// The includer declares `medium` (medium_block), `shapes[]` (shape_block), `atlas`, `colors` and `bricks`
 // (sampler3D) and the constants of path_args.h.
 #ifndef TYN_PATH_MEDIA_GLSL
 #define TYN_PATH_MEDIA_GLSL
@@ -62,6 +62,20 @@ float shape_density(shape_block shape, vec3 local)
     return textureLod(atlas, texel * path_atlas_texel, 0.0).r;
 }
 
+// A grid of colours of the shape, likewise; TYN_COLORS_*.
+bool shape_has_color(shape_block shape, uint which)
+{
+    return shape.colors[which].size.x > 0u;
+}
+
+vec3 shape_color(shape_block shape, uint which, vec3 local)
+{
+    shape_colors c = shape.colors[which];
+    vec3 size = vec3(c.size);
+    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(0.0, 0.0, float(c.layer));
+    return c.scale * textureLod(colors, texel * path_colors_texel, 0.0).rgb;
+}
+
 bool shape_is_sphere(shape_block shape)
 {
     return SHAPES == 1u ? (FLAGS & TYN_PATH_SPHERE) != 0u : shape.kind == TYN_SHAPE_KIND_SPHERE;
@@ -81,6 +95,21 @@ vec3 wrap(vec3 p)
         p -= floor(p / medium.extent) * medium.extent * vec3(medium.repeat);
     }
     return p;
+}
+
+// What a shape emits where its density is this and its absorption `a`.
+vec3 glow_at(shape_block shape, vec3 local, bool holds, float density, vec3 a)
+{
+    vec3 emission = density * shape.emission;
+    if ((FLAGS & TYN_PATH_GLOW) != 0u && holds) {
+        if (shape_has_color(shape, TYN_COLORS_EMISSION)) {
+            emission = shape.emission * shape_color(shape, TYN_COLORS_EMISSION, local);
+        }
+        if (shape_has_color(shape, TYN_COLORS_RADIANCE)) {
+            emission += a * shape_color(shape, TYN_COLORS_RADIANCE, local);
+        }
+    }
+    return emission;
 }
 
 // `pick` in [0, 1) draws the part; `hero` weighs the channels when it does.
@@ -106,11 +135,17 @@ media_point media_at(vec3 p, float pick, vec3 hero)
     for (uint i = 0u; i < count; i++) {
         shape_block shape = shape_get(i);
         vec3 local = shape_local(shape, p);
-        float density = shape_holds(shape, local) ? shape_density(shape, local) : 0.0;
-        vec3 s = density * grey(shape.sigma_s);
+        bool holds = shape_holds(shape, local);
+        float density = holds ? shape_density(shape, local) : 0.0;
+        vec3 s = density * grey(shape.sigma_s), a = density * grey(shape.sigma_a);
+        m.sigma_t += s + a;
+        if ((FLAGS & TYN_PATH_ALBEDO) != 0u && shape_has_color(shape, TYN_COLORS_ALBEDO)) {
+            vec3 t = s + a;
+            s = t * shape_color(shape, TYN_COLORS_ALBEDO, local);
+            a = t - s;
+        }
         m.sigma_s += s;
-        m.sigma_t += s + density * grey(shape.sigma_a);
-        m.emission += density * shape.emission;
+        m.emission += glow_at(shape, local, holds, density, a);
         if (SHAPES == 1u) {
             m.part_s = s;
             m.phase = grey(shape.phase);

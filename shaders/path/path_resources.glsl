@@ -1,4 +1,4 @@
-// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 15), and
+// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 16), and
 // what it is specialised to.
 #ifndef TYN_PATH_RESOURCES_GLSL
 #define TYN_PATH_RESOURCES_GLSL
@@ -32,6 +32,7 @@ TYN_READ(7, env_table, env_table_block env_table; env_cell env_cells[]);
 #define MATERIALS_AT 12
 #include "shaders/surfaces/surfaces.glsl"
 TYN_READ(15, emitters, surface_table emitters; surface_cell emitter_cells[]);
+layout(set = 0, binding = 16) uniform sampler3D colors;
 TYN_ARGS(path_args args_in);
 
 // Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.
@@ -41,6 +42,7 @@ path_args args;
 shape_block path_shapes[TYN_PATH_SHAPES_MAX]; // where there are no more
 light_block path_light0; // the only light
 vec3 path_atlas_texel;   // 1 / texels of the atlas
+vec3 path_colors_texel;  // ... of the grids of colours
 vec4 path_emitters;      // centre of the emissive triangles (M) and squared radius
 
 light_block path_light(uint index)
@@ -60,6 +62,9 @@ void path_load()
     medium = medium_in;
     args = args_in;
     path_atlas_texel = 1.0 / vec3(textureSize(atlas, 0));
+    if ((FLAGS & (TYN_PATH_GLOW | TYN_PATH_ALBEDO)) != 0u) {
+        path_colors_texel = 1.0 / vec3(textureSize(colors, 0));
+    }
     if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
         env = env_in;
     }

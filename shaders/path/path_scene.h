@@ -25,6 +25,7 @@ typedef struct tyn_path_params {
     uint32_t keep_few; // the device is a processor
     uint32_t emitters; // some of them emit and are in the table
     uint32_t emissive;
+    uint32_t glow, albedo; // by grids of colours, of some medium
     uint32_t num_lights;
     uint32_t num_lamps;   // point and spot lights among them
     uint32_t near_lamps;  // those in or near the media
@@ -108,5 +109,6 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
         (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
         (p->textures ? TYN_PATH_TEXTURES : 0) | (p->keep_few ? TYN_PATH_KEEP_FEW : 0) |
-        (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0);
+        (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0) | (p->glow ? TYN_PATH_GLOW : 0) |
+        (p->albedo ? TYN_PATH_ALBEDO : 0);
 }

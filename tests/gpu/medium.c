@@ -18,6 +18,8 @@ typedef struct world {
     struct shape_block shapes[MAX_SHAPES];
     tyn_extent atlas_size;
     float *atlas;
+    const float *colors; // RGBA, of colors_size; NULL: none
+    tyn_extent colors_size;
     bool direct, emissive;
     int32_t samples;
 } world;
@@ -137,11 +139,16 @@ static void declare_pass(gpu_test *t, const world *w, tyn_ref refs[MEDIUM_NUM_PO
     params.mode = w->medium.mode;
     params.direct = w->direct;
     params.emissive = w->emissive;
+    params.colors = w->colors != NULL;
     memcpy(params.size, w->medium.size, sizeof params.size);
     memcpy(params.bricks, w->medium.bricks, sizeof params.bricks);
     memset(refs, 0, MEDIUM_NUM_PORTS * sizeof *refs);
     tyn_graph_begin(t->graph);
     refs[MEDIUM_PORT_ATLAS] = gpu_image(t, "atlas", TYN_IMAGE_3D, w->atlas_size, 1, w->atlas);
+    if (w->colors) {
+        refs[MEDIUM_PORT_COLORS] =
+            gpu_image(t, "colors", TYN_IMAGE_3D, w->colors_size, 4, w->colors);
+    }
     refs[MEDIUM_PORT_SHAPES] = gpu_buffer(t, "shapes", w->shapes, sizeof w->shapes);
     refs[MEDIUM_PORT_MEDIUM] = gpu_buffer(t, "medium", &w->medium, sizeof w->medium);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_medium, &params, refs), TYN_OK);
@@ -417,6 +424,84 @@ static void coefficients(void **state)
     free(w.atlas);
 }
 
+// Grids of colours: an emission that needs no density, black bodies by the absorption, an albedo of each place.
+static void colors(void **state)
+{
+    gpu_test *t = *state;
+    uint32_t seed = 31;
+    enum { X = 10, Y = 8, EZ = 6, RZ = 5, AZ = 7, Z = EZ + RZ + AZ };
+    const uint32_t image[3] = {X, Y, Z}, sizes[3][3] = {{X, 7, EZ}, {9, Y, RZ}, {8, 6, AZ}};
+    const uint32_t layers[3] = {0, EZ, EZ + RZ}, none[3] = {0, 0, 0};
+    const float scales[3] = {3, 20, 1};
+    world w = world_make(TYN_MEDIUM_COEFFICIENTS, (float[3]){2, 1, 1}, (uint32_t[3]){64, 32, 32},
+                         (tyn_extent){16, 12, 10});
+    for (int i = 0; i < 16 * 12 * 10; i++) { // nothing in the first half
+        w.atlas[i] = i % 16 < 8 ? 0 : (float)random_unit(&seed);
+    }
+    float *texels = calloc((size_t)X * Y * Z * 4, sizeof *texels);
+    for (int i = 0; i < X * Y * Z * 4; i++) { // emission in few places
+        texels[i] = i < X * Y * EZ * 4 && i / 4 % 7 ? 0 : (float)random_unit(&seed);
+    }
+    w.colors = texels;
+    w.colors_size = (tyn_extent){X, Y, Z};
+    w.emissive = true;
+    struct shape_block *s =
+        add_shape(&w, TYN_SHAPE_KIND_BOX, (double[3]){1, 0.5, 0.5}, (double[3]){2, 1, 1}, 0, 0);
+    memcpy(s->size, (uint32_t[3]){16, 12, 10}, 12);
+    memcpy(s->sigma_s, (float[3]){1, 2, 3}, 12);
+    memcpy(s->sigma_a, (float[3]){0.5f, 0, 1}, 12);
+    memcpy(s->emission, (float[3]){2, 0.5f, 1}, 12);
+    s->phase[0].g = s->phase[1].g = s->phase[2].g = 0.25f;
+    for (int k = 0; k < 3; k++) {
+        memcpy(s->colors[k].size, sizes[k], 12);
+        s->colors[k].layer = layers[k];
+        s->colors[k].scale = scales[k];
+    }
+    textures out = run(t, &w);
+    double worst = 0;
+    for (int i = 0; i < 64 * 32 * 32; i++) {
+        const double p[3] = {(i % 64 + 0.5) / 64, (i / 64 % 32 + 0.5) / 32, (i / 2048 + 0.5) / 32};
+        const double m[3] = {2 * p[0], p[1], p[2]};
+        const double density = exact_value(&w, s, m);
+        for (int c = 0; c < 3; c++) {
+            double value[3];
+            for (int k = 0; k < 3; k++) {
+                const uint32_t offset[3] = {0, 0, layers[k]};
+                const double texel[3] = {p[0] * sizes[k][0], p[1] * sizes[k][1],
+                                         p[2] * sizes[k][2]};
+                value[k] = scales[k] * trilinear(texels, 4, c, image, offset, sizes[k], texel);
+            }
+            const double sigma_t = density * (s->sigma_s[c] + s->sigma_a[c]);
+            const double sigma_s = sigma_t * value[2], sigma_a = sigma_t - sigma_s;
+            const double emission = s->emission[c] * value[0] + sigma_a * value[1];
+            worst = maximum(worst, fabs(out.sigma_s[4 * i + c] - sigma_s));
+            worst = maximum(worst, fabs(out.sigma_a[4 * i + c] - sigma_a));
+            worst = maximum(worst, fabs(out.emission[4 * i + c] - emission) / 20);
+        }
+    }
+    assert_true(within(worst, 1e-4, BOUND_ROUNDING, "grids of colours"));
+    // A brick is empty only where neither density nor emission reach it.
+    int glows = 0;
+    for (uint32_t q = 0; q < 8 * 4 * 4; q++) {
+        double emission = 0, dense = 0;
+        for (int k = 0; k < 9 * 9 * 9; k++) {
+            const double p[3] = {(q % 8 + (k % 9) / 8.0) / 8, (q / 8 % 4 + (k / 9 % 9) / 8.0) / 4,
+                                 (q / 32 + (k / 81) / 8.0) / 4};
+            const double m[3] = {2 * p[0], p[1], p[2]}, texel[3] = {p[0] * X, p[1] * 7, p[2] * EZ};
+            dense = maximum(dense, exact_value(&w, s, m));
+            for (int c = 0; c < 3; c++) {
+                emission = maximum(emission, trilinear(texels, 4, c, image, none, sizes[0], texel));
+            }
+        }
+        assert_true(out.bricks[q][1] > 0 || (emission <= 0 && dense <= 0));
+        glows += emission > 0 && dense <= 0;
+    }
+    assert_true(glows > 10);
+    check_distance(&w, &out);
+    free(texels);
+    free(w.atlas);
+}
+
 // medium_sample: inside, on the faces, outside; periodic axes; both modes.
 static void lookup(void **state)
 {
@@ -533,11 +618,9 @@ static void refuses_wrong_bricks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(direct),
-        cmocka_unit_test(coverage),
-        cmocka_unit_test(coefficients),
-        cmocka_unit_test(lookup),
-        cmocka_unit_test(refuses_wrong_bricks),
+        cmocka_unit_test(direct),       cmocka_unit_test(coverage),
+        cmocka_unit_test(coefficients), cmocka_unit_test(colors),
+        cmocka_unit_test(lookup),       cmocka_unit_test(refuses_wrong_bricks),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -11,15 +11,18 @@
 #endif
 #include "base/half.h"
 
-enum {
-    GRID = 672,
-    TREE = 64,
-    ROOT = 64,
-    TILE = 32,
-    UPPER = 270400,
-    LOWER = 33856,
-    VERSION = 32 << 21 | 4 << 10
-};
+enum { GRID = 672, TREE = 64, TILE = 32, VERSION = 32 << 21 | 4 << 10 };
+
+// Sizes of nodes, and where their tables begin and how far apart the entries of these are.
+typedef struct layout {
+    uint32_t root, upper, upper_table, lower, lower_table, stride, leaf_table;
+} layout;
+
+static layout layout_of(const nvdb_spec *s)
+{
+    return s->type == NVDB_VEC3F ? (layout){96, 532544, 8256, 66624, 1088, 16, 128}
+                                 : (layout){64, 270400, 8256, 33856, 1088, 8, 96};
+}
 
 static void put(uint8_t *at, uint64_t v, int bytes)
 {
@@ -52,8 +55,10 @@ static void put_value(const nvdb_spec *s, uint8_t *at, float v)
 {
     if (s->type == NVDB_HALF) {
         put(at, tyn_half_from_float(v), 2);
-    } else {
-        put_float(at, v);
+        return;
+    }
+    for (int c = 0; c < (s->type == NVDB_VEC3F ? 3 : 1); c++) {
+        put_float(at + 4 * c, v / (float)(1 << c));
     }
 }
 
@@ -64,9 +69,10 @@ static int fpn_log_bits(const nvdb_spec *s)
 
 static size_t leaf_size(const nvdb_spec *s)
 {
-    return s->type == NVDB_FLOAT  ? 2144
-           : s->type == NVDB_HALF ? 1120
-                                  : 96 + (64u << fpn_log_bits(s));
+    return s->type == NVDB_VEC3F   ? 6272
+           : s->type == NVDB_FLOAT ? 2144
+           : s->type == NVDB_HALF  ? 1120
+                                   : 96 + (64u << fpn_log_bits(s));
 }
 
 // Distinct nodes of one level that cover the active box.
@@ -127,7 +133,9 @@ static void write_leaf(const nvdb_spec *s, uint8_t *leaf, int32_t x, int32_t y, 
             p[2] >= s->lo[2] && p[2] <= s->hi[2]) {
             set_bit(leaf + 16, (uint32_t)n);
         }
-        if (s->type == NVDB_FLOAT) {
+        if (s->type == NVDB_VEC3F) {
+            put_value(s, leaf + layout_of(s).leaf_table + 12 * n, v);
+        } else if (s->type == NVDB_FLOAT) {
             put_float(leaf + 96 + 4 * n, v);
         } else if (s->type == NVDB_HALF) {
             put(leaf + 96 + 2 * n, tyn_half_from_float(v), 2);
@@ -175,15 +183,16 @@ static void write_grid(const nvdb_spec *s, uint8_t *g, const level *upper, const
 static void write_nodes(const nvdb_spec *s, uint8_t *g, const level *upper, const level *lower,
                         const level *leaf)
 {
+    const layout at = layout_of(s);
     uint64_t n = 0;
     for (int32_t x = upper->lo[0]; x < upper->lo[0] + upper->count[0]; x++) {
         for (int32_t y = upper->lo[1]; y < upper->lo[1] + upper->count[1]; y++) {
             for (int32_t z = upper->lo[2]; z < upper->lo[2] + upper->count[2]; z++, n++) {
-                uint8_t *tile = g + GRID + TREE + ROOT + n * TILE;
+                uint8_t *tile = g + GRID + TREE + at.root + n * TILE;
                 uint64_t key = ((uint32_t)z & 0xfffff) | (uint64_t)((uint32_t)y & 0xfffff) << 21 |
                                (uint64_t)((uint32_t)x & 0xfffff) << 42;
                 put(tile, key, 8);
-                put(tile + 8, upper->offset + n * UPPER - (GRID + TREE), 8);
+                put(tile + 8, upper->offset + n * at.upper - (GRID + TREE), 8);
             }
         }
     }
@@ -196,16 +205,16 @@ static void write_nodes(const nvdb_spec *s, uint8_t *g, const level *upper, cons
                 uint32_t in_w =
                     (uint32_t)((x & 127) >> 3 << 8 | (y & 127) >> 3 << 4 | (z & 127) >> 3);
                 set_bit(g + u + 4128, in_u);
-                put(g + u + 8256 + 8 * in_u, w - u, 8);
+                put(g + u + at.upper_table + at.stride * in_u, w - u, 8);
                 if (s->tile_value != 0.0f && x == s->tile[0] && y == s->tile[1] &&
                     z == s->tile[2]) {
                     set_bit(g + w + 32, in_w);
-                    put_value(s, g + w + 1088 + 8 * in_w, s->tile_value);
+                    put_value(s, g + w + at.lower_table + at.stride * in_w, s->tile_value);
                     continue;
                 }
                 uint64_t l = node_at(leaf, x, y, z);
                 set_bit(g + w + 544, in_w);
-                put(g + w + 1088 + 8 * in_w, l - w, 8);
+                put(g + w + at.lower_table + at.stride * in_w, l - w, 8);
                 write_leaf(s, g + l, x, y, z);
             }
         }
@@ -214,11 +223,12 @@ static void write_nodes(const nvdb_spec *s, uint8_t *g, const level *upper, cons
 
 uint8_t *nvdb_write(const nvdb_spec *s, size_t *size, size_t *grid_offset)
 {
-    level upper = make_level(s, 12, UPPER), lower = make_level(s, 7, LOWER);
+    const layout at = layout_of(s);
+    level upper = make_level(s, 12, at.upper), lower = make_level(s, 7, at.lower);
     level leaf = make_level(s, 3, leaf_size(s));
-    upper.offset = GRID + TREE + ROOT + num_nodes(&upper) * TILE;
-    lower.offset = upper.offset + num_nodes(&upper) * UPPER;
-    leaf.offset = lower.offset + num_nodes(&lower) * LOWER;
+    upper.offset = GRID + TREE + at.root + num_nodes(&upper) * TILE;
+    lower.offset = upper.offset + num_nodes(&upper) * at.upper;
+    leaf.offset = lower.offset + num_nodes(&lower) * at.lower;
     uint64_t grid_size = leaf.offset + num_nodes(&leaf) * leaf.size, packed = grid_size;
     uint8_t *grid = calloc(1, grid_size), *data = grid;
     write_grid(s, grid, &upper, &lower, &leaf, grid_size);
@@ -247,6 +257,12 @@ uint8_t *nvdb_write(const nvdb_spec *s, size_t *size, size_t *grid_offset)
     put(file + 14, s->codec, 2);
     put(file + 16, grid_size, 8);
     put(file + 24, packed, 8);
+    uint64_t active = 1;
+    for (int a = 0; a < 3; a++) {
+        active *= (uint64_t)(s->hi[a] - s->lo[a] + 1);
+        put_double(file + 16 + 112 + 8 * a, s->voxel);
+    }
+    put(file + 16 + 24, active, 8);
     put(file + 16 + 32, s->type, 4);
     put(file + 16 + 36, s->grid_class, 4);
     put_box(s, file + 16 + 88);

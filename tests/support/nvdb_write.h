@@ -3,7 +3,16 @@
 #include <stdint.h>
 #include <stddef.h>
 
-enum { NVDB_FLOAT = 1, NVDB_HALF = 9, NVDB_FP4 = 13, NVDB_FP8 = 14, NVDB_FP16 = 15, NVDB_FPN = 16 };
+// VEC3F: a voxel's value times 1, 1/2, 1/4.
+enum {
+    NVDB_FLOAT = 1,
+    NVDB_VEC3F = 6,
+    NVDB_HALF = 9,
+    NVDB_FP4 = 13,
+    NVDB_FP8 = 14,
+    NVDB_FP16 = 15,
+    NVDB_FPN = 16
+};
 enum { NVDB_PLAIN = 0, NVDB_ZIP = 1, NVDB_BLOSC = 2 };
 
 typedef struct nvdb_spec {

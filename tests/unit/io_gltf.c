@@ -204,16 +204,19 @@ static void unknown_members(void **state)
          NULL},
         {"'scatering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatering: not known and left out; known "
-         "here: scattering absorption emission density anisotropy"},
+         "here: scattering absorption emission density temperature emission_density albedo "
+         "anisotropy"},
         {"'absorption': 1", "'Shape': 'sphere'", "'turn': 3",
          "nodes[0].extensions.TYN_participating_media.Shape and 1 more: not known and left out; "
          "known here: medium shape repeat"},
         {"'density scattering': 1", "", "",
          "extensions.TYN_participating_media.media[0].density scattering: not known and left out; "
-         "known here: scattering absorption emission density anisotropy"},
+         "known here: scattering absorption emission density temperature emission_density albedo "
+         "anisotropy"},
         {"'scatt\\nering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatt?ering: not known and left out; known "
-         "here: scattering absorption emission density anisotropy"},
+         "here: scattering absorption emission density temperature emission_density albedo "
+         "anisotropy"},
         {"", "", "'Radiance': [1, 1, 1]",
          "extensions.TYN_environment_map.environments[0].Radiance: not known and left out; known "
          "here: uri radiance rotation"},

@@ -8,10 +8,16 @@ static uint64_t hash_media(const tyn_scene *scene, uint64_t key)
     for (uint32_t i = 0; i < scene->num_volumes; i++) {
         key = HASH(scene->volumes[i].hash, HASH(scene->volumes[i].size, key));
     }
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        key = HASH(scene->color_grids[i].hash, HASH(scene->color_grids[i].size, key));
+    }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         const tyn_medium *m = &scene->media[i];
         key = HASH(m->sigma_s, HASH(m->sigma_a, HASH(m->phase, HASH(m->emission, key))));
         key = HASH(m->density_scale, HASH(m->volume, key));
+        if (m->emission_grid || m->radiance_grid || m->albedo_grid) {
+            key = HASH(m->emission_grid, HASH(m->radiance_grid, HASH(m->albedo_grid, key)));
+        }
     }
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_shape *s = &scene->shapes[i];

@@ -50,6 +50,52 @@ TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const c
                                    uint64_t *clamped_negative, const tyn_log *log);
 TYN_API void tyn_volume_finish(tyn_volume *volume);
 
+// A grid of a volume file, as it is listed.
+typedef struct tyn_volume_grid {
+    char name[128];            // cut where it is longer
+    char type[24];             // "float", "vec3s", ...: as the format calls it
+    char grid_class[24];       // "fog volume", "level set", "staggered", "unknown", ...
+    uint64_t active_voxels;    // 0: none, and no box
+    int32_t lo[3], hi[3];      // box of the active voxels in the file's index space, inclusive
+    double index_to_world[16]; // column-major; index (i, j, k) is the centre of a voxel
+    double voxel[3];           // its edges, in units of the file's world
+    double world_lo[3], world_hi[3]; // box around the outer corners of those voxels
+    bool affine; // else the transform is a frustum, and the last four are not known
+    // Least and largest value; of vectors, of any component. OpenVDB: of active voxels. NanoVDB: of all in the box.
+    bool
+        has_range; // false if a value is not finite; else of floats, doubles, integers and vectors of them (NanoVDB: of what can be read)
+    double least, most;
+} tyn_volume_grid;
+
+// All grids of a .nvdb or .vdb file, in its order: `grids` from malloc. Reads every grid once.
+TYN_API tyn_result tyn_volume_list(const char *path, tyn_volume_grid **grids, uint32_t *count,
+                                   const tyn_log *log);
+
+// Loads a grid of colours of a .nvdb or .vdb file: `grid` (Required) of vectors of three floats, or of scalars, which are
+// grey. Negative values are set to 0 and added to `clamped_negative` (may be NULL). `index_to_world` (may be NULL): as
+// that of tyn_volume.
+TYN_API tyn_result tyn_color_grid_load(tyn_color_grid *colors, const char *path, const char *grid,
+                                       double index_to_world[16], uint64_t *clamped_negative,
+                                       const tyn_log *log);
+TYN_API void tyn_color_grid_finish(tyn_color_grid *colors);
+
+// What the values of a grid of temperatures are, and how bright it is.
+typedef struct tyn_temperature {
+    double scale, offset; // kelvins = value * scale + offset; scale 0: 1
+    double strength;      // multiplies the radiance of black bodies, >= 0; 0: 1
+    // > 0: radiance W/(m^2 sr) of this luminance at every temperature from 500 K on, which then is a hue alone; below
+    // nothing. 0: as black bodies are.
+    double luminance;
+} tyn_temperature;
+// The radiance of black bodies for a medium's radiance_grid: loads a grid of scalars (NULL: "temperature"), or
+// takes values, size[0]*size[1]*size[2] of them, x fastest. Memory: 12 bytes a voxel.
+TYN_API tyn_result tyn_temperature_load(tyn_color_grid *colors, const char *path, const char *grid,
+                                        const tyn_temperature *how, double index_to_world[16],
+                                        const tyn_log *log);
+TYN_API tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t size[3],
+                                                  const float *values, const tyn_temperature *how,
+                                                  const tyn_log *log);
+
 // Loads a latitude-longitude map (.exr, .hdr) into `size`, `data` and `hash` and sets `present`;
 // radiance, rotation and strength are kept. Negative values are set to 0.
 TYN_API tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log);

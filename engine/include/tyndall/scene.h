@@ -26,6 +26,21 @@ typedef struct tyn_volume {
     uint64_t hash;
 } tyn_volume;
 
+// A dense grid of colours in the box that a medium's density fills, of its own size; values sit as those of a tyn_volume.
+typedef struct tyn_color_grid {
+    char *name;        // for messages; may be NULL
+    uint32_t size[3];  // voxels, 1 to 65536
+    uint32_t channels; // Required: 3: R, G, B of each voxel; 1: grey
+    float *data;       // size[0]*size[1]*size[2] * channels, x fastest; >= 0, finite; owned by the scene
+    float max;         // Required: no value of data is larger
+    uint64_t hash;     // of data, as tyn_volume.hash
+} tyn_color_grid;
+
+// Radiance of a black body, linear RGB (Rec.709), W/(m^2 sr), as light of lamps is counted here: luminance in cd/m^2 over
+// 683 lm/W. `kelvins` >= 0 and finite, else 0. Colours beyond Rec.709 have their negative channels set to 0.
+// Planck's law over the CIE 1931 2 degree observer (fits of Wyman, Sloan and Shirley 2013).
+TYN_API void tyn_blackbody(double kelvins, float rgb[3]);
+
 // The phase function of one colour channel: how scattered light is spread over angles. {0} is isotropic.
 typedef struct tyn_phase {
     float g; // mean cosine of the Henyey-Greenstein phase function, (-1, 1)
@@ -41,12 +56,16 @@ typedef struct tyn_medium {
     // Multiplies the density, > 0; 0 = 1. (A medium that is not to be there has coefficients 0, or no shape.)
     float density_scale;
     int32_t volume; // Required: index into scene.volumes; -1: homogeneous, density 1
+    // Grids that vary the medium beyond its density: 1 + index into scene.color_grids, 0: none.
+    uint32_t emission_grid; // what `emission` is multiplied with, in place of the density
+    uint32_t radiance_grid; // W/(m^2 sr), of black bodies: the absorption at a point times it is emitted as well
+    uint32_t albedo_grid;   // 0 to 1: sigma_s / (sigma_s + sigma_a), in place of the coefficients' own; their sum stays
 } tyn_medium;
 static inline float tyn_medium_scale(const tyn_medium *medium)
 {
     return medium->density_scale == 0.0f ? 1.0f : medium->density_scale;
 }
-TYN_API void tyn_medium_clear(tyn_medium *medium); // coefficients 0: it is as if it were not there
+TYN_API void tyn_medium_clear(tyn_medium *medium); // coefficients 0, no grids of colours: it is as if it were not there
 
 typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shape_kind;
 
@@ -205,6 +224,8 @@ typedef struct tyn_scene {
     char *name;
     tyn_volume *volumes;
     uint32_t num_volumes;
+    tyn_color_grid *color_grids;
+    uint32_t num_color_grids;
     tyn_medium media[TYN_MAX_MEDIA];
     uint32_t num_media;
     tyn_shape shapes[TYN_MAX_SHAPES];

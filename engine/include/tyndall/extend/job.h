@@ -14,6 +14,7 @@ extern "C" {
 // Resources every method starts from; a {0} ref does not exist in this scene.
 typedef struct tyn_scene_refs {
     tyn_ref atlas;       // 3D R16F or R32F, all density grids (sampled)
+    tyn_ref colors;      // 3D RGBA16F or RGBA32F, all grids of colours; {0} without
     tyn_ref medium;      // struct medium_block
     tyn_ref shapes;      // struct shape_block[]
     tyn_ref lights;      // struct light_block[]: tyn_lights.scene

@@ -1,0 +1,164 @@
+// color_grid.c -- grids of colours: what emits, black bodies, albedo.
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/given.h"
+#include "base/hash.h"
+#include "io/volume.h"
+
+void tyn_color_grid_finish(tyn_color_grid *colors)
+{
+    if (colors) {
+        free(colors->name);
+        free(colors->data);
+        memset(colors, 0, sizeof *colors);
+    }
+}
+
+// What was read, as a grid of colours; `job` is empty then.
+static void take(tyn_color_grid *colors, tyn_grid_job *job, double index_to_world[16])
+{
+    const tyn_volume *v = &job->volume;
+    *colors = (tyn_color_grid){.name = v->name,
+                               .size = {v->size[0], v->size[1], v->size[2]},
+                               .channels = job->channels,
+                               .data = v->data,
+                               .max = v->max_density,
+                               .hash = v->hash};
+    if (index_to_world) {
+        memcpy(index_to_world, v->index_to_world, sizeof v->index_to_world);
+    }
+    memset(&job->volume, 0, sizeof job->volume);
+}
+
+tyn_result tyn_color_grid_load(tyn_color_grid *colors, const char *path, const char *grid,
+                               double index_to_world[16], uint64_t *clamped_negative,
+                               const tyn_log *log)
+{
+    if (!TYN_GIVEN(log, colors, path, grid)) {
+        return TYN_ERR_PARAMS;
+    }
+    memset(colors, 0, sizeof *colors);
+    tyn_grid_job job = {.grid = grid, .use = TYN_GRID_COLOR, .log = log};
+    const tyn_result r = tyn_grid_read(&job, path);
+    if (!r) {
+        take(colors, &job, index_to_world);
+    }
+    if (clamped_negative) {
+        *clamped_negative += job.clamped;
+    }
+    return r;
+}
+
+// ---- temperatures -----------------------------------------------------------------------------
+
+enum { STEPS = 4096 }; // of a table over the temperatures of a grid
+
+static void radiance_of(double kelvins, const tyn_temperature *how, float rgb[3])
+{
+    const double strength = how->strength == 0 ? 1 : how->strength;
+    tyn_blackbody(kelvins, rgb);
+    double factor = strength;
+    if (how->luminance > 0) {
+        const double y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+        factor = kelvins >= 500 && y > 0 ? strength * how->luminance / y : 0;
+    }
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = (float)fmin(rgb[c] * factor, FLT_MAX);
+    }
+}
+
+static bool is_fit(const tyn_temperature *t, const tyn_log *log)
+{
+    const struct {
+        const char *name;
+        double value, least;
+    } numbers[] = {{"scale", t->scale, -DBL_MAX},
+                   {"offset", t->offset, -DBL_MAX},
+                   {"strength", t->strength, 0},
+                   {"luminance", t->luminance, 0}};
+    for (int i = 0; i < 4; i++) {
+        if (!isfinite(numbers[i].value) || numbers[i].value < numbers[i].least) {
+            tyn_log_print(log, TYN_LOG_ERROR, "temperature: %s = %g: must be finite%s",
+                          numbers[i].name, numbers[i].value,
+                          numbers[i].least == 0 ? " and >= 0" : "");
+            return false;
+        }
+    }
+    return true;
+}
+
+tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t size[3],
+                                          const float *values, const tyn_temperature *how,
+                                          const tyn_log *log)
+{
+    if (!TYN_GIVEN(log, colors, size, values, how) || !is_fit(how, log)) {
+        return TYN_ERR_PARAMS;
+    }
+    const size_t count = (size_t)size[0] * size[1] * size[2];
+    const double scale = how->scale == 0 ? 1 : how->scale;
+    double least = INFINITY, most = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double kelvins = fmax(values[i] * scale + how->offset, 0);
+        if (!isfinite(kelvins)) {
+            tyn_log_print(log, TYN_LOG_ERROR, "temperature %g of value %zu: must be finite",
+                          (double)values[i], i);
+            return TYN_ERR_PARAMS;
+        }
+        least = fmin(least, kelvins);
+        most = fmax(most, kelvins);
+    }
+    *colors = (tyn_color_grid){.size = {size[0], size[1], size[2]}, .channels = 3};
+    colors->data = malloc(count * 3 * sizeof *colors->data);
+    float(*table)[3] = malloc((STEPS + 1) * sizeof *table);
+    if (!colors->data || !table) {
+        tyn_log_print(log, TYN_LOG_ERROR, "no memory for the radiance of %zu voxels", count);
+        free(table);
+        tyn_color_grid_finish(colors);
+        return TYN_ERR_MEMORY;
+    }
+    const double step = fmax((most - least) / STEPS, 1e-9);
+    for (int i = 0; i <= STEPS; i++) {
+        radiance_of(least + i * step, how, table[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const double at = (fmax(values[i] * scale + how->offset, 0) - least) / step;
+        const int below = at < STEPS ? (int)at : STEPS - 1;
+        const float t = (float)fmin(at - below, 1);
+        for (int c = 0; c < 3; c++) {
+            const float v = table[below][c] + t * (table[below + 1][c] - table[below][c]);
+            colors->data[3 * i + (size_t)c] = v;
+            colors->max = v > colors->max ? v : colors->max;
+        }
+    }
+    free(table);
+    colors->hash = tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, size, 3 * sizeof *size),
+                                  colors->data, count * 3 * sizeof *colors->data);
+    return TYN_OK;
+}
+
+tyn_result tyn_temperature_load(tyn_color_grid *colors, const char *path, const char *grid,
+                                const tyn_temperature *how, double index_to_world[16],
+                                const tyn_log *log)
+{
+    if (!TYN_GIVEN(log, colors, path, how)) {
+        return TYN_ERR_PARAMS;
+    }
+    memset(colors, 0, sizeof *colors);
+    tyn_grid_job job = {.grid = grid ? grid : "temperature", .use = TYN_GRID_VALUE, .log = log};
+    tyn_result r = tyn_grid_read(&job, path);
+    if (r) {
+        return r;
+    }
+    r = tyn_color_grid_of_temperatures(colors, job.volume.size, job.volume.data, how, log);
+    if (!r) {
+        colors->name = job.volume.name;
+        job.volume.name = NULL;
+        if (index_to_world) {
+            memcpy(index_to_world, job.volume.index_to_world, sizeof job.volume.index_to_world);
+        }
+    }
+    tyn_volume_finish(&job.volume);
+    return r;
+}

@@ -1,0 +1,159 @@
+// grid_choice.c -- which grid of a file is meant: by name, and by what names mean.
+#include "io/volume.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+// As OpenVDB's samples, Houdini, Blender and EmberGen call them. The first that fits counts.
+static const struct {
+    const char *word; // what a name begins with, lower case; "=": is
+    tyn_grid_role role;
+} words[] = {
+    {"density", TYN_ROLE_DENSITY},    {"=dens", TYN_ROLE_DENSITY},
+    {"smoke", TYN_ROLE_DENSITY},      {"soot", TYN_ROLE_DENSITY},
+    {"fog", TYN_ROLE_DENSITY},        {"cloud", TYN_ROLE_DENSITY},
+    {"extinction", TYN_ROLE_DENSITY}, {"temp", TYN_ROLE_HEAT},
+    {"heat", TYN_ROLE_HEAT},          {"flame", TYN_ROLE_HEAT},
+    {"fire", TYN_ROLE_HEAT},          {"fuel", TYN_ROLE_HEAT},
+    {"burn", TYN_ROLE_HEAT},          {"react", TYN_ROLE_HEAT},
+    {"blackbody", TYN_ROLE_HEAT},     {"emission", TYN_ROLE_EMISSION},
+    {"emit", TYN_ROLE_EMISSION},      {"incandescence", TYN_ROLE_EMISSION},
+    {"=cd", TYN_ROLE_COLOR},          {"color", TYN_ROLE_COLOR},
+    {"colour", TYN_ROLE_COLOR},       {"albedo", TYN_ROLE_COLOR},
+    {"scatter", TYN_ROLE_COLOR},      {"vel", TYN_ROLE_VELOCITY},
+    {"=v", TYN_ROLE_VELOCITY},        {"v.", TYN_ROLE_VELOCITY},
+    {"motion", TYN_ROLE_VELOCITY},    {"=vx", TYN_ROLE_VELOCITY},
+    {"=vy", TYN_ROLE_VELOCITY},       {"=vz", TYN_ROLE_VELOCITY},
+    {"pressure", TYN_ROLE_OTHER},     {"diverg", TYN_ROLE_OTHER},
+    {"vort", TYN_ROLE_OTHER},         {"surface", TYN_ROLE_OTHER},
+    {"distance", TYN_ROLE_OTHER},     {"sdf", TYN_ROLE_OTHER},
+    {"collision", TYN_ROLE_OTHER},    {"rest", TYN_ROLE_OTHER},
+    {"shadow", TYN_ROLE_OTHER},
+};
+
+tyn_grid_role tyn_grid_role_of(const char *name)
+{
+    char lower[32];
+    size_t i = 0;
+    for (; name[i] && i + 1 < sizeof lower; i++) {
+        lower[i] = (char)tolower((unsigned char)name[i]);
+    }
+    lower[i] = '\0';
+    for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+        const char *word = words[k].word;
+        if (word[0] == '=' ? strcmp(lower, word + 1) == 0
+                           : strncmp(lower, word, strlen(word)) == 0) {
+            return words[k].role;
+        }
+    }
+    return TYN_ROLE_UNKNOWN;
+}
+
+typedef struct choice {
+    const char *const *names, *const *types;
+    const bool *scalar, *vector;
+    uint32_t count;
+} choice;
+
+static void add(char *text, size_t room, const char *separator, const char *name, const char *type)
+{
+    const size_t used = strlen(text);
+    snprintf(text + used, room - used, "%s\"%.60s\" (%s)", used ? separator : "", name, type);
+}
+
+static int find(const choice *c, const tyn_grid_job *job)
+{
+    int best = -1, rank = 0;
+    for (uint32_t i = 0; i < c->count; i++) {
+        if (job->grid) {
+            if (strcmp(c->names[i], job->grid) == 0) {
+                return (int)i;
+            }
+            continue;
+        }
+        const tyn_grid_role role = tyn_grid_role_of(c->names[i]);
+        const int now = !c->scalar[i]                         ? 0
+                        : strcmp(c->names[i], "density") == 0 ? 3
+                        : role == TYN_ROLE_DENSITY            ? 2
+                        : role == TYN_ROLE_UNKNOWN            ? 1
+                                                              : 0;
+        if (now > rank) {
+            rank = now;
+            best = (int)i;
+        }
+    }
+    return best;
+}
+
+// Of the other grids those that somebody may look for.
+static void tell_others(tyn_grid_job *job, const choice *c, int chosen)
+{
+    static const char *const words_of[] = {
+        [TYN_ROLE_HEAT] =
+            "heat: \"temperature\" of a scene's medium, or \"emission_density\", has it glow",
+        [TYN_ROLE_EMISSION] = "\"emission_density\" of a scene's medium has it glow",
+        [TYN_ROLE_COLOR] = "\"albedo\" of a scene's medium reads it",
+        [TYN_ROLE_VELOCITY] = "velocity: media do not move while a picture is taken",
+    };
+    job->left_out[0] = '\0';
+    for (int role = TYN_ROLE_HEAT; role <= TYN_ROLE_VELOCITY; role++) {
+        char names[160] = "";
+        for (uint32_t i = 0; i < c->count; i++) {
+            const bool is = (int)i != chosen && !(job->used >> role & 1) &&
+                            (int)tyn_grid_role_of(c->names[i]) == role;
+            if (is && strlen(names) < 100) {
+                const size_t used = strlen(names);
+                snprintf(names + used, sizeof names - used, "%s\"%.40s\"", used ? ", " : "",
+                         c->names[i]);
+            }
+        }
+        const size_t used = strlen(job->left_out);
+        if (names[0]) {
+            snprintf(job->left_out + used, sizeof job->left_out - used, "%s%s (%s)",
+                     used ? "; " : "", names, words_of[role]);
+        }
+    }
+}
+
+int tyn_volume_choose(tyn_grid_job *job, const char *const *names, const char *const *types,
+                      const bool *scalar, const bool *vector, uint32_t count, const char *file)
+{
+    const choice c = {names, types, scalar, vector, count};
+    const int chosen = find(&c, job);
+    if (chosen >= 0 && !job->grid && tyn_grid_role_of(names[chosen]) == TYN_ROLE_UNKNOWN) {
+        for (uint32_t i = 0; i < count; i++) {
+            job->guessed |= (int)i != chosen && scalar[i];
+        }
+    }
+    if (chosen >= 0 && (scalar[chosen] || (job->use == TYN_GRID_COLOR && vector[chosen]))) {
+        tell_others(job, &c, chosen);
+        return chosen;
+    }
+    if (chosen >= 0) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "%s: grid \"%.100s\" holds %s values: must be float, half or quantised "
+                      "float%s",
+                      file, names[chosen], types[chosen],
+                      job->use == TYN_GRID_COLOR ? ", or vectors of three floats" : "");
+        return -1;
+    }
+    char list[512] = "";
+    bool any = false;
+    for (uint32_t i = 0; i < count; i++) {
+        add(list, sizeof list, ", ", names[i], types[i]);
+        any |= scalar[i];
+    }
+    if (job->grid) {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no grid \"%.100s\": there are %s", file,
+                      job->grid, count ? list : "none");
+    } else if (any) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "%s: no grid that is a density by its name: there are %s; name the one that "
+                      "is, as \"grid\" of a scene's density",
+                      file, list);
+    } else {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no grid of float values: there are %s", file,
+                      count ? list : "none");
+    }
+    return -1;
+}
