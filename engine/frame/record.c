@@ -16,6 +16,8 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
     uint64_t data = result == TYN_OK
                         ? tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash)
                         : 0;
+    const uint64_t phases = result == TYN_OK ? tyn_phase_tables_hash(frame->scene) : 0;
+    data = phases ? tyn_hash_u64(data, phases) : data;
     if (result == TYN_OK && data != ctx->checked_data) {
         result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
         ctx->checked_data = result == TYN_OK ? data : 0;

@@ -134,6 +134,7 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
             p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && tyn_phase_is_grey(s->phase);
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
     }
+    p->tabled = job->refs.phases.resource != 0;
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
@@ -177,4 +178,5 @@ void tyn_connect_path_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
     tyn_connect(refs, SCENE_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, SCENE_PORT_MATERIALS, job->refs.materials);
     refs[SCENE_PORT_EMITTERS] = job->refs.emitters;
+    refs[SCENE_PORT_PHASES] = job->refs.phases;
 }

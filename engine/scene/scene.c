@@ -48,6 +48,7 @@ void tyn_scene_finish(tyn_scene *scene)
     free(scene->name);
     free(scene->generator);
     free(scene->volumes);
+    free(scene->phase_tables);
     free(scene->cameras);
     free(scene->warnings);
     free(scene->environment.data);

@@ -105,6 +105,7 @@
         "struct env_table_block and cells: alias table of the map's brightness"), \
     X(P, EMITTERS, emitters, OPTIONAL, BUFFER, \
         "struct surface_table and cells: alias table of the emissive triangles' power"), \
+    X(P, PHASES, phases, OPTIONAL, BUFFER, "tables of phase functions (phase_table.glsl)"), \
     TYN_GEOMETRY(X##_OPTIONAL, P), \
     TYN_MATERIALS(X##_OPTIONAL, P)
 // clang-format on

@@ -33,6 +33,7 @@
 #define TYN_PATH_KEEP_FEW 16384u // few triangles are kept in registers
 #define TYN_PATH_QUEUE 8192u     // images: threads take pieces of work one after another
 #define TYN_PATH_THIN 2048u      // first flights are stretched: args.stretch
+#define TYN_PATH_TABLED 32768u   // some phase functions are tables
 // Balance: the first flights of light are followed from suns and lamps.
 #define TYN_PATH_FROM_LIGHTS 1024u
 
