@@ -137,13 +137,15 @@ void tyn_phase_table_moments(const tyn_phase_table *t, double theta_1, double *m
 
 // ---- what delta scaling knows of it -----------------------------------------------------------
 
-// f. Of a Henyey-Greenstein lobe the second moment is f of its forward half, but backward peaks add to it as well: in the
-// odd moments they count against it, so half the sum with the mean of the odd moments beside it is what is forward. Of
-// one lobe the former is the smaller for g > 0, g^2, and the latter is below 0 for g < 0.
-static double delta_of(const double chi[4])
+// f. Of a Henyey-Greenstein lobe the second moment, g^2. Two other things add to the second moment that are no forward peak
+// and are left out: what is broad adds next to nothing to the fourth, whose root is g^2 as well; and peaks straight back count
+// against the odd moments, so half the sum with the mean of those beside it is what is forward. Of one lobe the last is not
+// the least for g > 0, and below 0 for g < 0.
+static double delta_of(const double chi[5])
 {
-    const double forward = 0.5 * (chi[2] + 0.5 * (chi[1] + chi[3]));
-    return fmin(fmax(fmin(chi[2], forward), 0), 0.9999);
+    const double broad = sqrt(fmax(chi[4], 0)), forward = 0.5 * (chi[2] + 0.5 * (chi[1] + chi[3]));
+    const double f = fmin(fmin(chi[2], broad), forward);
+    return f > 1e-3 ? fmin(f, 0.9999) : 0; // less is next to no peak, or rounding
 }
 
 // g of a Henyey-Greenstein lobe that is as high at its peak: (1 + g) / (1 - g)^2 = 4 pi p.
@@ -155,8 +157,8 @@ static double lobe_as_high_as(double p)
 
 tyn_phase tyn_phase_of_table(const tyn_phase_table *t, uint32_t index)
 {
-    double chi[4] = {0};
-    tyn_phase_table_moments(t, 0, chi, 4);
+    double chi[5] = {0};
+    tyn_phase_table_moments(t, 0, chi, 5);
     const uint64_t hash = tyn_hash_bytes(TYN_HASH_SEED, t->values, sizeof t->values);
     return (tyn_phase){.g = (float)chi[1],
                        .table = index + 1,
