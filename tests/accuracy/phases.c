@@ -1,10 +1,8 @@
-// phases.c -- media whose phase functions are tables: fluxes of `path` against doubling (tests/support/doubling.c), pictures of
-// `pop` and `single` against `path`.
+// phases.c -- `path` in media whose phase functions are tables: fluxes of slabs against doubling (tests/support/doubling.c).
 //
-// Asserted: doubling itself gives the fluxes that DISORT gives of Henyey-Greenstein slabs (tests/data/slabs.csv); `path`'s
-// reflectances and transmittances of slabs are those of doubling within 3 standard errors, of 0.1 % at most; pictures of
-// `pop` are within the bound of one-lobe media (pop_path.c), each printed beside that of the lobe of its mean cosine; a
-// table of one lobe gives the lobe's own picture; first scattering is `path`'s; media that overlap are mixed.
+// Asserted: doubling itself gives the fluxes that DISORT gives of Henyey-Greenstein slabs (tests/data/slabs.csv);
+// reflectances and transmittances are those of doubling within 3 standard errors, which are 0.1 % at most; so are those of
+// two media that overlap, which count by what they scatter.
 #include "bound.h"
 #include "doubling.h"
 #include "path_run.h"
@@ -137,127 +135,10 @@ static void mixed(void **state)
     tyn_scene_finish(&scene);
 }
 
-// ---- pictures ---------------------------------------------------------------------------------
-
-enum { PIXELS = 64 };
-
-static void make_cube(tyn_scene *scene, tyn_view *view)
-{
-    const tyn_medium medium = grey_medium(8, 0.2f, 0);
-    tyn_scene_init(scene);
-    scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){1, 1, 1},
-                  NULL);
-    scene_add_sun(scene, -2, -5, 3, 3, 2.5f, 2);
-    *view = (tyn_view){0};
-    view_orthographic(view, (float[]){0.5f, 0.5f, 0.5f}, 4, -2, -5, (float[]){0, 1, 0}, 0.8f,
-                      PIXELS);
-}
-
-static picture_error compare(path_run *r, const char *name, const tyn_scene *scene,
-                             const tyn_view *view, const picture *reference)
-{
-    picture ours;
-    picture_render(&ours, r->dev, "pop", scene, view, NULL, 0);
-    const picture_error e = picture_compare(&ours, reference, 8);
-    printf("%-28s error %5.2f %% (rel_l1 %5.2f, noise %4.2f, bias %+5.2f)\n", name,
-           100 * e.reported, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
-    picture_free(&ours);
-    return e;
-}
-
-static void pictures(void **state)
-{
-    path_run *r = *state;
-    double worst = 0;
-    for (int kind = 0; kind < PHASES_COUNT; kind++) {
-        tyn_scene scene;
-        tyn_view view;
-        picture reference = {0};
-        make_cube(&scene, &view);
-        const tyn_phase phase = phases_add(&scene, (phases_kind)kind);
-        for (int one = 0; one < 2; one++) {
-            char name[64];
-            snprintf(name, sizeof name, "%s%s", phases_name((phases_kind)kind),
-                     one ? ", one lobe" : "");
-            take(&scene, one ? (tyn_phase){.g = phase.g} : phase);
-            path_run_picture(r, &reference, &scene, &view, path_effort(1024));
-            const picture_error e = compare(r, name, &scene, &view, &reference);
-            worst = one ? worst : fmax(worst, e.reported);
-        }
-        picture_free(&reference);
-        tyn_scene_finish(&scene);
-    }
-    assert_within(worst, 0.12, NULL); // as media of one lobe
-}
-
-// A table of a lobe against the lobe itself: `pop` and `single`, under a sun, a lamp and a sky.
-static void same_lobe(void **state)
-{
-    path_run *r = *state;
-    const tyn_phase_lobe halves[2] = {{.weight = 0.5f, .g = 0.8f}, {.weight = 0.5f, .g = 0.8f}};
-    const tyn_phase_form form = {.count = 2, .lobes = halves};
-    for (int lit = 0; lit < 3; lit++) {
-        for (int i = 0; i < 2; i++) {
-            const char *method = i ? "single" : "pop";
-            tyn_scene scene;
-            tyn_view view;
-            tyn_phase phase;
-            picture with[2];
-            make_cube(&scene, &view);
-            if (lit == 1) {
-                scene.num_lights = 0;
-                scene_add_lamp(&scene, (float[]){0.2f, 1.3f, 0.4f}, 2);
-            } else if (lit == 2) {
-                scene_set_sky(&scene, 0.5f);
-            }
-            assert_int_equal(tyn_scene_add_phase(&scene, &form, "phase", &phase, NULL), TYN_OK);
-            for (int table = 0; table < 2; table++) {
-                take(&scene, table ? phase : (tyn_phase){.g = 0.8f});
-                picture_render(&with[table], r->dev, method, &scene, &view, NULL, 0);
-            }
-            const picture_error e = picture_compare(&with[1], &with[0], 1);
-            printf("a table of one lobe, %s, light %d: rel_l1 %.2g\n", method, lit, e.rel_l1);
-            assert_true(e.rel_l1 < 1e-4);
-            picture_free(&with[0]);
-            picture_free(&with[1]);
-            tyn_scene_finish(&scene);
-        }
-    }
-}
-
-// First scattering of `single` against `path`'s layer of it.
-static void first_scattering(void **state)
-{
-    path_run *r = *state;
-    double worst = 0;
-    for (int kind = 0; kind < PHASES_COUNT; kind++) {
-        tyn_scene scene;
-        tyn_view view;
-        picture ours;
-        make_cube(&scene, &view);
-        take(&scene, phases_add(&scene, (phases_kind)kind));
-        view.max_depth = 1;
-        picture reference = {0};
-        path_run_picture(r, &reference, &scene, &view, path_effort(64));
-        view.max_depth = 0;
-        picture_render(&ours, r->dev, "single", &scene, &view, NULL, 0);
-        const picture_error e = picture_compare(&ours, &reference, 8);
-        printf("%s, once: rel_l1 %.4f, noise %.4f, bias %+.4f\n", phases_name((phases_kind)kind),
-               e.rel_l1, e.noise, e.bias);
-        worst = fmax(worst, e.reported);
-        picture_free(&ours);
-        picture_free(&reference);
-        tyn_scene_finish(&scene);
-    }
-    assert_within(worst, 0.01, NULL);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(against_disort), cmocka_unit_test(fluxes),
-        cmocka_unit_test(mixed),          cmocka_unit_test(same_lobe),
-        cmocka_unit_test(pictures),       cmocka_unit_test(first_scattering)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(against_disort), cmocka_unit_test(fluxes),
+                                       cmocka_unit_test(mixed)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return run_cases(tests, path_run_setup, path_run_teardown);
