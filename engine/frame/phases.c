@@ -40,7 +40,7 @@ static void warn(tyn_context *ctx, bool knows)
             ? "phase functions of several media: each counts as the Henyey-Greenstein lobe "
               "of its mean cosine; 'path' knows them"
             : "phase functions that are not one Henyey-Greenstein lobe count as that of their mean "
-              "cosine; 'path', 'pop' and 'single' know them");
+              "cosine; 'path', 'pop', 'lpv' and 'single' know them");
 }
 
 tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene)

@@ -122,7 +122,8 @@ static void same_lobe(void **state)
         lit_by lit;
         bool colours;
     } cases[] = {{"pop", LIT_SUN, false}, {"pop", LIT_LAMP, true},   {"pop", LIT_LAMPS, false},
-                 {"pop", LIT_MAP, true},  {"single", LIT_SUN, true}, {"single", LIT_LAMP, false}};
+                 {"pop", LIT_MAP, true},  {"single", LIT_SUN, true}, {"single", LIT_LAMP, false},
+                 {"lpv", LIT_SUN, true}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const char *method = cases[i].method;
         const lit_by lit = cases[i].lit;
