@@ -6,13 +6,13 @@
 #ifndef TYN_PHASE_TABLE_GLSL
 #define TYN_PHASE_TABLE_GLSL
 
-struct phase_row { // of a node
-    float away;  // 1 - mu
-    float value; // 1/sr
-    float below; // part of the scattering below the angle
-    float pad;
-};
-TYN_READ(PHASE_TABLES, phases, phase_row phase_rows[]); // TYN_PHASE_NODES of each table
+layout(set = 0, binding = PHASE_TABLES) uniform samplerBuffer phases_texels; // TYN_PHASE_NODES rows of each table
+
+// Of a node: 1 - mu, value in 1/sr, part of the scattering below the angle.
+vec3 phase_row(uint row)
+{
+    return texelFetch(phases_texels, int(row)).xyz;
+}
 
 // `table`: of a phase, > 0.
 float phase_table_near(uint table, float one_minus_mu)
@@ -22,9 +22,9 @@ float phase_table_near(uint table, float one_minus_mu)
     float quarter = sqrt(half_away) / (1.0 + sqrt(1.0 - half_away));
     float at = sqrt(sqrt(quarter)) * float(TYN_PHASE_NODES - 1);
     uint row = (table - 1u) * TYN_PHASE_NODES + min(uint(at), uint(TYN_PHASE_NODES - 2));
-    float from = phase_rows[row].away, to = phase_rows[row + 1u].away;
-    float t = clamp((one_minus_mu - from) / (to - from), 0.0, 1.0);
-    return mix(phase_rows[row].value, phase_rows[row + 1u].value, t);
+    vec3 from = phase_row(row), to = phase_row(row + 1u);
+    float t = clamp((one_minus_mu - from.x) / (to.x - from.x), 0.0, 1.0);
+    return mix(from.y, to.y, t);
 }
 
 // 1 - mu of an angle below which the part u of the scattering is.
@@ -33,16 +33,14 @@ float phase_table_sample(uint table, float u)
     uint row = (table - 1u) * TYN_PHASE_NODES, at = 0u;
     for (uint stride = TYN_PHASE_NODES / 2; stride > 0u; stride >>= 1u) {
         uint next = min(at + stride, uint(TYN_PHASE_NODES - 2));
-        at = phase_rows[row + next].below <= u ? next : at;
+        at = phase_row(row + next).z <= u ? next : at;
     }
-    row += at;
-    float from = phase_rows[row].below, part = phase_rows[row + 1u].below - from;
-    float r = part > 0.0 ? clamp((u - from) / part, 0.0, 1.0) : 0.5;
+    vec3 from = phase_row(row + at), to = phase_row(row + at + 1u);
+    float part = to.z - from.z, r = part > 0.0 ? clamp((u - from.z) / part, 0.0, 1.0) : 0.5;
     // The integral of a + (b - a) t is r of its whole.
-    float a = phase_rows[row].value, b = phase_rows[row + 1u].value;
-    float root = a + sqrt(max(a * a + r * (b * b - a * a), 0.0));
+    float a = from.y, b = to.y, root = a + sqrt(max(a * a + r * (b * b - a * a), 0.0));
     float t = root > 0.0 ? min(r * (a + b) / root, 1.0) : r;
-    return mix(phase_rows[row].away, phase_rows[row + 1u].away, t);
+    return mix(from.x, to.x, t);
 }
 
 #endif

@@ -82,7 +82,7 @@ static void tables(void **state)
     gpu_test *t = *state;
     static float points[COUNT][4], rows[PHASES_COUNT][TYN_PHASE_NODES][4];
     static point_pass pass;
-    const point_input inputs[1] = {{"phases", TYN_BUFFER, TYN_USE_STORAGE_READ}};
+    const point_input inputs[1] = {{"phases", TYN_BUFFER, TYN_USE_TEXELS_VEC4}};
     for (int kind = 0; kind < PHASES_COUNT; kind++) {
         tyn_scene scene;
         tyn_scene_init(&scene);
