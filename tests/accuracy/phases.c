@@ -6,6 +6,7 @@
 #include "bound.h"
 #include "doubling.h"
 #include "path_run.h"
+#include "numbers.h"
 #include "phases.h"
 #include "skip.h"
 #include <math.h>
@@ -38,7 +39,7 @@ static void against_disort(void **state)
         doubling_moments(henyey_greenstein, &g, chi);
         doubling_fluxes(chi, tau, albedo, mu0, &up, &down);
         const double ours = depth > 0 ? down : 1 - up;
-        off = fmax(off, fabs(ours - net));
+        off = maximum(off, fabs(ours - net));
         count++;
     }
     fclose(f);
@@ -91,7 +92,7 @@ static void fluxes(void **state)
                        phases_name((phases_kind)kind), slab[0], slab[1], slab[2], below ? "T" : "R",
                        value, error, right[below], z);
                 assert_true(error < 1e-3);
-                worst = fmax(worst, fabs(z));
+                worst = maximum(worst, fabs(z));
             }
             tyn_scene_finish(&scene);
         }

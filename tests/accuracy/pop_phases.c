@@ -6,6 +6,7 @@
 // is `path`'s.
 #include "bound.h"
 #include "path_run.h"
+#include "numbers.h"
 #include "phases.h"
 #include "skip.h"
 #include <math.h>
@@ -65,7 +66,7 @@ static void pictures(void **state)
             take(&scene, one ? (tyn_phase){.g = phase.g} : phase);
             path_run_picture(r, &reference, &scene, &view, path_effort(1024));
             const picture_error e = compare(r, name, &scene, &view, &reference);
-            worst = one ? worst : fmax(worst, e.reported);
+            worst = one ? worst : maximum(worst, e.reported);
         }
         picture_free(&reference);
         tyn_scene_finish(&scene);
@@ -142,7 +143,7 @@ static void same_lobe(void **state)
         const picture_error e = picture_compare(&with[1], &with[0], 1);
         printf("a table of one lobe, %s, %s%s: rel_l1 %.2g\n", method, names[lit],
                cases[i].colours ? ", colours" : "", e.rel_l1);
-        worst = fmax(worst, e.rel_l1);
+        worst = maximum(worst, e.rel_l1);
         picture_free(&with[0]);
         picture_free(&with[1]);
         tyn_scene_finish(&scene);
@@ -171,7 +172,7 @@ static void first_scattering(void **state)
         const picture_error e = picture_compare(&ours, &reference, 8);
         printf("%s, once: rel_l1 %.4f, noise %.4f, bias %+.4f\n", phases_name((phases_kind)kind),
                e.rel_l1, e.noise, e.bias);
-        worst = fmax(worst, e.reported);
+        worst = maximum(worst, e.reported);
         picture_free(&ours);
         picture_free(&reference);
         tyn_scene_finish(&scene);

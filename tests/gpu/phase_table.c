@@ -4,6 +4,7 @@
 // in 64 bins of equal probability, by the formula's own integral, as many as they should (chi^2).
 #include "bound.h"
 #include "gpu_test.h"
+#include "numbers.h"
 #include "phases.h"
 #include "point_pass.h"
 #include "scene/phase_table.h"
@@ -113,7 +114,7 @@ static void tables(void **state)
         for (int i = 0; i < VALUES; i++) {
             const double theta = 2 * asin(fmin(sqrt(0.5 * (double)points[i][0]), 1));
             const double value = phases_value(theta, &(phases_kind){(phases_kind)kind});
-            off = fmax(off, fabs((double)r[i].phase / value - 1));
+            off = maximum(off, fabs((double)r[i].phase / value - 1));
         }
         printf("%s: values within %.2g\n", phases_name((phases_kind)kind), off);
         if (kind == PHASES_ANGLES) {

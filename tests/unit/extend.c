@@ -36,28 +36,28 @@ static void layout(void **state)
         SIZE(tyn_draw, 64),
         SIZE(tyn_regime, 192),
         SIZE(tyn_limit, 240),
-        SIZE(tyn_method_info, 48),
+        SIZE(tyn_method_info, 56),
         SIZE(tyn_setting, 32),
-        SIZE(tyn_scene, 9720),
+        SIZE(tyn_scene, 10760),
         SIZE(tyn_view, 192),
         SIZE(tyn_ref, 8),
         SIZE(tyn_lattice_shape, 44),
         SIZE(tyn_lights, 8716),
-        SIZE(tyn_frame_scene, 19408),
-        SIZE(tyn_scene_refs, 280),
-        SIZE(tyn_job, 392),
+        SIZE(tyn_frame_scene, 23320),
+        SIZE(tyn_scene_refs, 288),
+        SIZE(tyn_job, 400),
         SIZE(tyn_picture, 24),
         SIZE(tyn_picture_hook, 24),
         SIZE(tyn_sources, 424),
         SIZE(tyn_rsm, 6236),
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),
-        SIZE(tyn_method, 80),
+        SIZE(tyn_method, 88),
         SIZE(tyn_calls, 672),
         SIZE(tyn_plugin, 64),
         // What kernels read that were compiled with the GLSL of then.
-        SIZE(struct medium_block, 136),
-        SIZE(struct shape_block, 128),
+        SIZE(struct medium_block, 196),
+        SIZE(struct shape_block, 188),
         SIZE(struct light_block, 64),
         SIZE(struct camera_block, 80),
         SIZE(struct env_block, 112),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 2);
+    assert_int_equal(TYN_EXTEND_ABI, 3);
     assert_int_equal(changed, 0);
 }
 

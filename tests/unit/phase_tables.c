@@ -5,6 +5,7 @@
 // lobes does not count the backward one; equal phase functions share a table; faults are one line that says what is right.
 #include "bound.h"
 #include "io_test.h"
+#include "numbers.h"
 #include "phases.h"
 #include "scene/phase.h"
 #include "scene/phase_table.h"
@@ -60,12 +61,12 @@ static void formulas(void **state)
         for (int i = 0; i <= 1800; i++) {
             const double theta = i * PI / 1800;
             const double value = phases_value(theta, &(phases_kind){(phases_kind)kind});
-            off = fmax(off, fabs(look_up(table, theta) / value - 1));
+            off = maximum(off, fabs(look_up(table, theta) / value - 1));
         }
         tyn_phase_moments(scene.phase_tables, phase, chi, TERMS);
         formula_moments((phases_kind)kind, right);
         for (int l = 0; l < TERMS; l++) {
-            off_moments = fmax(off_moments, fabs(chi[l] - right[l]));
+            off_moments = maximum(off_moments, fabs(chi[l] - right[l]));
         }
         printf(
             "%s: values within %.2g, moments within %.2g; g %.6f, f %.6f, lobes as of %.4f, %.4f\n",
@@ -105,7 +106,7 @@ static void one_lobe(void **state)
             const double theta = tyn_phase_lobe_moments(NULL, lobe, 1, a, TERMS);
             const double theta_1 = tyn_phase_lobe_moments(scene.phase_tables, table, 1, b, TERMS);
             for (int l = 0; l < TERMS; l++) {
-                off = fmax(off, fabs(a[l] - b[l]));
+                off = maximum(off, fabs(a[l] - b[l]));
             }
             printf("g %g: window %.6f of %.6f, moments of the lobe within %.2g\n", (double)g,
                    theta_1, theta, off);
