@@ -157,6 +157,13 @@ static void add_media(cJSON *root, const tyn_scene *scene)
             tyn_phase_get(m->phase, p, values);
             add_floats(medium, p->name, values, 3);
         }
+        if (scene->num_phase_tables) { // beside lobes, -1
+            int tables[3];
+            for (int c = 0; c < 3; c++) {
+                tables[c] = (int)m->phase[c].table - 1;
+            }
+            cJSON_AddItemToObject(medium, "phase_tables", cJSON_CreateIntArray(tables, 3));
+        }
         add_floats(medium, "emission", m->emission, 3);
         add_grid(medium, "emission_grid", m->emission_grid);
         add_grid(medium, "radiance_grid", m->radiance_grid);

@@ -14,6 +14,18 @@ static void print_color(const char *title, const float v[3], const char *after)
     printf("%s%g %g %g%s", title, v[0], v[1], v[2], after);
 }
 
+// Of phase functions that are no Henyey-Greenstein lobes.
+static void print_tables(const tyn_phase phase[3])
+{
+    static const char *const colours[3] = {"red", "green", "blue"};
+    for (int c = 0; c < 3; c++) {
+        if (phase[c].table) {
+            printf("  phase function of %s: table %u, %.4g of it straight on\n", colours[c],
+                   phase[c].table - 1, tyn_phase_delta_fraction(phase[c]));
+        }
+    }
+}
+
 static void print_media(const tyn_scene *scene)
 {
     for (uint32_t i = 0; i < scene->num_volumes; i++) {
@@ -42,6 +54,7 @@ static void print_media(const tyn_scene *scene)
             printf("  %s", p->title);
             print_color(" ", values, "\n");
         }
+        print_tables(m->phase);
         if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
             print_color("  emission    ", m->emission, " W/(m^3 sr)");
             if (m->emission_grid) {

@@ -113,6 +113,9 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
                                        &ctx->map_light, &ctx->surfaces, log);
     }
     if (result == TYN_OK) {
+        result = tyn_frame_phases(ctx, frame->scene);
+    }
+    if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
         tyn_colors_plan(&ctx->colors, frame->scene);
         choose_storage(ctx);

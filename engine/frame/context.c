@@ -104,6 +104,7 @@ void tyn_context_destroy(tyn_context **context)
     tyn_context_clear_warnings(ctx);
     free(ctx->points);
     free(ctx->env_cdf);
+    free(ctx->phase_rows);
     tyn_surface_data_finish(&ctx->surfaces);
     free(ctx->nodes);
     free(ctx);

@@ -38,6 +38,8 @@ struct tyn_context {
     uint64_t checked_data; // hash of the densities and texels that were found fit
     tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
+    float (*phase_rows)[4]; // tables of phase functions, as shaders read them
+    uint64_t phase_hash;    // of the tables that they are of; 0: none
     tyn_surface_data surfaces;
     tyn_resumed_image resumed[6]; // tyn_view.resume
     char *warnings[MAX_WARNINGS];
@@ -52,6 +54,9 @@ struct tyn_context {
 
 // sizes.c: identifies what of a declared frame must be as it was prepared; what differs beside it is a value.
 uint64_t tyn_frame_sizes(const tyn_context *ctx, const tyn_frame *frame);
+// phases.c: what the method knows of the scene's phase functions, in ctx->frame.
+tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene);
+uint64_t tyn_phase_tables_hash(const tyn_scene *scene); // 0: there are none
 // check.c: are the frame's numbers fit?
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame);
 // check_images.c: are the images fit that the host lends? Of a frame whose scene is.

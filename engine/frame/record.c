@@ -17,6 +17,8 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
     if (result == TYN_OK) {
         data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash);
         data = tyn_hash_u64(data, tyn_colors_hash(frame->scene));
+        const uint64_t phases = tyn_phase_tables_hash(frame->scene);
+        data = phases ? tyn_hash_u64(data, phases) : data;
     }
     if (result == TYN_OK && data != ctx->checked_data) {
         result = tyn_scene_check_data(frame->scene, &ctx->dev->log);

@@ -25,6 +25,7 @@ static uint64_t add_scene(uint64_t h, const tyn_scene *scene)
 {
     const tyn_surfaces *s = &scene->surfaces;
     const uint32_t counts[] = {scene->num_volumes,
+                               scene->num_phase_tables,
                                scene->num_media,
                                scene->num_shapes,
                                scene->num_lights,

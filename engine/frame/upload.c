@@ -119,6 +119,13 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
     tyn_graph_mark_media(g, refs->medium);
     tyn_graph_mark_media(g, refs->shapes);
 
+    if (f->phase_tables) {
+        refs->phases = tyn_graph_upload_buffer(
+            g, "phases", ctx->phase_rows,
+            scene->num_phase_tables * TYN_PHASE_NODES * sizeof *ctx->phase_rows, ctx->phase_hash);
+        tyn_graph_mark_media(g, refs->phases);
+    }
+
     refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights.scene, sizeof f->lights.scene, 0);
     refs->suns = tyn_graph_upload_buffer(g, "suns", f->lights.suns, sizeof f->lights.suns, 0);
     refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);

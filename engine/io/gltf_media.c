@@ -1,5 +1,6 @@
 // gltf_media.c -- reads TYN_participating_media and TYN_environment_map.
 #include "io/gltf_media.h"
+#include "io/gltf_phase.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -30,6 +31,7 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
         TYN_TRY(tyn_json_color(doc, from, p->key, p->lo, p->hi, p->right, values));
         tyn_phase_set(medium->phase, p, values);
     }
+    TYN_TRY(tyn_gltf_read_phase(scene, doc, from, medium->phase));
     TYN_TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
                            medium->emission));
     TYN_TRY(tyn_gltf_read_grids(scene, medium, &media->grids[scene->num_media], doc, from));
@@ -241,12 +243,22 @@ static void look_at_all(unknown *u, const cJSON *list, const char *extension, co
     }
 }
 
+// One phase function, or a list of them.
+static void look_at_phase(unknown *u, const cJSON *phase)
+{
+    const cJSON *first = cJSON_IsArray(phase) ? phase->child : phase;
+    for (const cJSON *p = first; p; p = cJSON_IsArray(phase) ? p->next : NULL) {
+        look(u, p, TYN_GLTF_PHASE_MEMBERS);
+        look_at_all(u, tyn_json_member(p, "lobes"), NULL, TYN_GLTF_LOBE_MEMBERS);
+    }
+}
+
 void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
 {
     static const char media[] = "TYN_participating_media", maps[] = "TYN_environment_map";
     unknown u = {0};
     char coefficients[256] =
-        " scattering absorption emission density temperature emission_density albedo ";
+        " scattering absorption emission density temperature emission_density albedo phase ";
     for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
         const size_t used = strlen(coefficients);
         snprintf(coefficients + used, sizeof coefficients - used, "%s ", p->key);
@@ -262,6 +274,7 @@ void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
         look(&u, tyn_json_member(medium, "emission_density"),
              " uri grid scale size type channels ");
         look(&u, tyn_json_member(medium, "albedo"), " uri grid size type channels ");
+        look_at_phase(&u, tyn_json_member(medium, "phase"));
     }
     look_at_all(&u, tyn_json_member(doc->root, "nodes"), media, " medium shape repeat ");
     at = extension_of(doc->root, maps);

@@ -139,6 +139,7 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
         p->albedo |= s->colors[TYN_COLORS_ALBEDO].size[0] > 0;
     }
     p->grey = p->grey && !p->albedo;
+    p->tabled = job->refs.phases.resource != 0;
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
@@ -183,4 +184,5 @@ void tyn_connect_path_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
     tyn_connect(refs, SCENE_PORT_MATERIALS, job->refs.materials);
     refs[SCENE_PORT_EMITTERS] = job->refs.emitters;
     refs[SCENE_PORT_COLORS] = job->refs.colors;
+    refs[SCENE_PORT_PHASES] = job->refs.phases;
 }

@@ -184,6 +184,7 @@ const tyn_method tyn_method_lpv = {
              .passes = passes,
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
+             .phases = TYN_PHASES_OF_ONE_MEDIUM,
              .limits = limits},
     .declare = declare,
 };

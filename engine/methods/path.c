@@ -382,6 +382,7 @@ const tyn_method tyn_method_path = {
              .progressive = true,
              .traces_rays = true,
              .reference = true,
+             .phases = TYN_PHASES_ALL,
              .limits = limits},
     .reads_env_cdf = true,
     .batch = batch,

@@ -84,6 +84,7 @@ const tyn_method tyn_method_single = {
              .passes = passes,
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)TYN_GUIDE_OUTPUTS,
              .single_only = true,
+             .phases = TYN_PHASES_OF_ONE_MEDIUM,
              .limits = limits},
     .declare = declare,
 };

@@ -133,6 +133,12 @@ static tyn_result check_medium(const tyn_scene *scene, uint32_t i, const tyn_log
     if (tyn_phase_check(m->phase, of, log)) {
         return TYN_ERR_PARAMS;
     }
+    for (int c = 0; c < 3; c++) {
+        if (m->phase[c].table > scene->num_phase_tables) {
+            FAULT("media[%u].phase[%d].table = %u: there are %u (0 = a Henyey-Greenstein lobe)", i,
+                  c, m->phase[c].table, scene->num_phase_tables);
+        }
+    }
     if (!(m->density_scale >= 0.0f && isfinite(m->density_scale))) {
         FAULT("media[%u].density_scale = %g: must be > 0 and finite (0 = 1)", i, m->density_scale);
     }
@@ -254,6 +260,9 @@ static tyn_result check_arrays(const tyn_scene *scene, const tyn_log *log)
     if (scene->num_color_grids && !scene->color_grids) {
         FAULT("color_grids = NULL, but there are to be %u", scene->num_color_grids);
     }
+    if (scene->num_phase_tables && !scene->phase_tables) {
+        FAULT("phase_tables = NULL, but there are to be %u", scene->num_phase_tables);
+    }
     if (scene->num_cameras && !scene->cameras) {
         FAULT("cameras = NULL, but there are to be %u", scene->num_cameras);
     }
@@ -270,6 +279,9 @@ tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
         scene->num_lights > TYN_MAX_LIGHTS) {
         FAULT("scene: %u media, %u shapes, %u lights: at most %d, %d, %d", scene->num_media,
               scene->num_shapes, scene->num_lights, TYN_MAX_MEDIA, TYN_MAX_SHAPES, TYN_MAX_LIGHTS);
+    }
+    if (scene->num_phase_tables > TYN_MAX_PHASE_TABLES) {
+        FAULT("num_phase_tables = %u: at most %d", scene->num_phase_tables, TYN_MAX_PHASE_TABLES);
     }
     for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
         r = check_volume(&scene->volumes[i], i, log);
@@ -302,6 +314,7 @@ tyn_result tyn_scene_check_data(const tyn_scene *scene, const tyn_log *log)
     for (uint32_t i = 0; !r && i < scene->num_color_grids; i++) {
         r = check_colors(&scene->color_grids[i], i, log);
     }
+    r = r ? r : tyn_phase_check_tables(scene, log);
     return r ? r : check_texels(&scene->environment, log);
 }
 

@@ -1,5 +1,6 @@
 // phase.c -- the parameters of the phase function, its mean cosine, its forward part and its Legendre moments.
 #include "scene/phase.h"
+#include "scene/phase_table.h"
 #include <math.h>
 #include <string.h>
 
@@ -30,6 +31,7 @@ void tyn_phase_get(const tyn_phase phase[3], const tyn_phase_parameter *p, float
 void tyn_phase_set(tyn_phase phase[3], const tyn_phase_parameter *p, const float values[3])
 {
     for (int c = 0; phase && p && values && c < 3; c++) {
+        phase[c] = phase[c].table ? (tyn_phase){.g = phase[c].g} : phase[c]; // a lobe from now on
         memcpy((char *)&phase[c] + p->offset, &values[c], sizeof values[c]);
     }
 }
@@ -52,7 +54,7 @@ tyn_result tyn_phase_check(const tyn_phase phase[3], const char *of, const tyn_l
 
 bool tyn_phase_equal(tyn_phase a, tyn_phase b)
 {
-    return a.g == b.g;
+    return a.g == b.g && a.table == b.table && a.key == b.key;
 }
 
 bool tyn_phase_is_grey(const tyn_phase phase[3])
@@ -75,22 +77,28 @@ double tyn_phase_mean_cosine(tyn_phase phase)
 double tyn_phase_delta_fraction(tyn_phase phase)
 {
     const double g = phase.g;
-    return g > 0 ? g * g : 0;
+    return phase.table ? (double)phase.delta : g > 0 ? g * g : 0;
 }
 
 double tyn_phase_narrowness(tyn_phase phase)
 {
-    return fabs(phase.g);
+    const double forward = (double)phase.forward, backward = (double)phase.backward;
+    return phase.table ? fmax(forward, backward) : fabs(phase.g);
+}
+
+bool tyn_phase_is_backward(tyn_phase phase)
+{
+    return !phase.table && phase.g < 0;
 }
 
 bool tyn_phase_has_lobe(tyn_phase phase)
 {
-    return phase.g > g_min;
+    return phase.table ? (double)phase.delta > g_min * g_min : phase.g > g_min;
 }
 
 tyn_phase tyn_phase_resolved(tyn_phase phase)
 {
-    return (tyn_phase){.g = fminf(phase.g, (float)TYN_PHASE_NARROWEST)};
+    return phase.table ? phase : (tyn_phase){.g = fminf(phase.g, (float)TYN_PHASE_NARROWEST)};
 }
 
 // ---- the forward lobe -----------------------------------------------------------------------------
@@ -178,23 +186,81 @@ static void add_moments(double g, double theta_1, double from, double to, const 
     }
 }
 
-double tyn_phase_lobe_moments(tyn_phase phase, double narrowest, double *moments, uint32_t terms)
+double tyn_phase_lobe_moments(const tyn_phase_table *tables, tyn_phase phase, double narrowest,
+                              double *moments, uint32_t terms)
 {
     double x[POINTS], w[POINTS], g = fmin(phase.g, narrowest);
-    gauss_legendre(x, w);
-    double theta_1 = find_theta_1(g, x, w);
     for (uint32_t l = 0; l < terms; l++) {
         moments[l] = 0;
     }
+    if (phase.table) {
+        const tyn_phase_table *table = &tables[phase.table - 1];
+        const double window = tyn_phase_table_window(table, (double)phase.delta);
+        tyn_phase_table_moments(table, window, moments, terms);
+        return window;
+    }
+    gauss_legendre(x, w);
+    double theta_1 = find_theta_1(g, x, w);
     add_moments(g, theta_1, 0, 0.5 * theta_1, x, w, moments, terms);
     add_moments(g, theta_1, 0.5 * theta_1, 1.5 * theta_1, x, w, moments, terms);
     return theta_1;
 }
 
-void tyn_phase_moments(tyn_phase phase, double *moments, uint32_t terms)
+void tyn_phase_moments(const tyn_phase_table *tables, tyn_phase phase, double *moments,
+                       uint32_t terms)
 {
     double power = 1;
+    if (phase.table) {
+        memset(moments, 0, terms * sizeof *moments);
+        tyn_phase_table_moments(&tables[phase.table - 1], 0, moments, terms);
+        return;
+    }
     for (uint32_t l = 0; l < terms; l++, power *= fabs(phase.g)) {
         moments[l] = power;
     }
+}
+
+// ---- tables ---------------------------------------------------------------------------------------
+
+static tyn_result check_table(const tyn_phase_table *table, uint32_t index, const tyn_log *log)
+{
+    for (uint32_t k = 0; k < TYN_PHASE_NODES; k++) {
+        if (!(table->values[k] >= 0 && table->values[k] <= 1e12f)) {
+            tyn_log_print(log, TYN_LOG_ERROR,
+                          "phase_tables[%u].values[%u] = %g: must be >= 0 and finite", index, k,
+                          table->values[k]);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    const double integral = tyn_phase_table_integral(table);
+    if (!(fabs(integral - 1) < 1e-4)) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "phase_tables[%u]: its integral over the sphere is %.6g: must be 1", index,
+                      integral);
+        return TYN_ERR_PARAMS;
+    }
+    return TYN_OK;
+}
+
+tyn_result tyn_phase_check_tables(const tyn_scene *scene, const tyn_log *log)
+{
+    tyn_phase right[TYN_MAX_PHASE_TABLES];
+    for (uint32_t i = 0; i < scene->num_phase_tables; i++) {
+        if (check_table(&scene->phase_tables[i], i, log)) {
+            return TYN_ERR_PARAMS;
+        }
+        right[i] = tyn_phase_of_table(&scene->phase_tables[i], i);
+    }
+    for (uint32_t i = 0; i < 3 * scene->num_media; i++) {
+        const tyn_phase *p = &scene->media[i / 3].phase[i % 3];
+        const tyn_phase *r = p->table ? &right[p->table - 1] : p;
+        if (!(p->g == r->g && p->delta == r->delta && p->forward == r->forward &&
+              p->backward == r->backward && p->key == r->key)) {
+            tyn_log_print(log, TYN_LOG_ERROR,
+                          "media[%u].phase[%u]: not what tyn_scene_add_phase makes of table %u",
+                          i / 3, i % 3, p->table);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    return TYN_OK;
 }

@@ -53,6 +53,7 @@ void tyn_scene_finish(tyn_scene *scene)
     free(scene->generator);
     free(scene->volumes);
     free(scene->color_grids);
+    free(scene->phase_tables);
     free(scene->cameras);
     free(scene->warnings);
     free(scene->environment.data);

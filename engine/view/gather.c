@@ -21,6 +21,7 @@ void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *i
     tyn_settings_params(job->settings, &tyn_pass_scatter_lut, &params);
     params.mode = m->mode;
     memcpy(params.phase, m->phase, sizeof params.phase);
+    params.tables = job->frame->phase_tables;
     params.g_max = largest_g(job);
     params.num_suns = s->num_suns;
     for (uint32_t n = 0; n < params.num_suns; n++) {
@@ -49,6 +50,7 @@ void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     for (int c = 0; c < 3; c++) {
         params.phase[c] = m->mode == TYN_MEDIUM_DENSITY ? m->phase[c] : narrowest;
     }
+    params.tables = job->frame->phase_tables;
     tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = in->sources->sky.map};
     tyn_graph_add(g, &tyn_pass_env_glow, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_env_glow, refs[ENV_GLOW_PORT_COUNTERS]);
@@ -69,6 +71,7 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     memcpy(params.tint, s->lattice.shape.tint, sizeof params.tint);
     params.mode = job->frame->medium.mode;
     params.grey = job->frame->grey;
+    params.tabled = job->refs.phases.resource != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [MERGE_PORT_MEDIUM] = job->refs.medium,
         [MERGE_PORT_CAMERA] = job->refs.camera,
@@ -90,6 +93,7 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         params.reach = TYN_LAMP_REACH * s->lattice.side;
         tyn_connect(refs, MERGE_PORT_RADIALS, lamps->radials);
         refs[MERGE_PORT_LUT] = in->lut;
+        refs[MERGE_PORT_PHASES] = job->refs.phases;
         refs[MERGE_PORT_LUT_BLOCK] = in->lut_block;
         tyn_connect(refs, MERGE_PORT_SHADOW_ATLAS, s->shadows);
     }

@@ -52,6 +52,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     const struct medium_block *block = &frame->medium;
     tyn_settings_params(job->settings, &tyn_pass_raymarch, params);
     params->grey = frame->grey && block->mode == TYN_MEDIUM_DENSITY;
+    params->tabled = job->refs.phases.resource != 0;
     params->mode = block->mode;
     params->num_suns = in->sources->num_suns;
     params->num_lamps = in->num_marched_lamps;
@@ -188,6 +189,7 @@ tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_input
         [RAYMARCH_PORT_DISTANCE] = in->sources->distance,
         [RAYMARCH_PORT_SHAPES] = job->refs.shapes,
         [RAYMARCH_PORT_LIGHTS] = job->refs.suns,
+        [RAYMARCH_PORT_PHASES] = job->refs.phases,
         [RAYMARCH_PORT_LUT] = in->lut,
         [RAYMARCH_PORT_LUT_BLOCK] = in->lut_block,
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,

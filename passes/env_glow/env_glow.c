@@ -80,7 +80,7 @@ static void make_series(const tyn_env_glow_params *p, struct glow_series *s)
         {1}, {1}, {1}}; // no lobe: the mean alone, which nothing is weighted with
     for (int c = 0; c < 3; c++) {
         if (tyn_phase_has_lobe(p->phase[c])) {
-            tyn_phase_lobe_moments(p->phase[c], TYN_PHASE_NARROWEST, phi[c], DEGREES);
+            tyn_phase_lobe_moments(p->tables, p->phase[c], TYN_PHASE_NARROWEST, phi[c], DEGREES);
             for (int l = DEGREES - 1; l >= 0; l--) {
                 phi[c][l] /= phi[c][0];
             }

@@ -8,6 +8,7 @@ typedef struct tyn_env_glow_params {
     // Of the colour channels. Where it varies in space, that of the largest mean cosine that matters: a narrower lobe
     // than there is shows the map too sharp, never too bright.
     tyn_phase phase[3];
+    const tyn_phase_table *tables; // of these, if some are tables
 } tyn_env_glow_params;
 
 // clang-format off

@@ -68,8 +68,8 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec);
     }
     if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {
-        const uint32_t spec[4] = {p->mode, p->grey, p->channels,
-                                  tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS)};
+        const uint32_t spec[5] = {p->mode, p->grey, p->channels,
+                                  tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS), p->tabled};
         TYN_DISPATCH(r, .kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec);
     }
     TYN_DISPATCH(r, .kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE, .cells = size,

@@ -12,6 +12,7 @@ typedef struct tyn_merge_params {
     uint32_t marched_lamps; // local lights that the march itself does, the first ones
     float reach;            // ... and so far from the others it does a part of them, m; 0: none
     uint32_t grey;          // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
+    uint32_t tabled;        // 1: some phase function of the medium is a table (`phases`)
 } tyn_merge_params;
 
 // clang-format off
@@ -28,6 +29,7 @@ typedef struct tyn_merge_params {
     TYN_RADIALS(X##_OPTIONAL, MERGE), \
     X(MERGE, LUT, lut, OPTIONAL, IMAGE_2D, "forward scattering, of scatter_lut"), \
     TYN_SHADOWS(X##_OPTIONAL, MERGE), \
+    X(MERGE, PHASES, phases, OPTIONAL, BUFFER, "tables of phase functions"), \
     X(MERGE, VPL_LIGHT, vpl_light, OPTIONAL, IMAGE_3D, "of lattice_lamps"), \
     X(MERGE, INSCATTER, inscatter, OUT, IMAGE_3D, \
         "(one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi) + sum over ordinates of E " \

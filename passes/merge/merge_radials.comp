@@ -8,6 +8,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
+#define PHASE_TABLES 12
+#define PHASE_TABLED (tabled != 0u)
+layout(constant_id = 4) const uint tabled = 0; // 1: some phase function of the medium is a table
 #include "shaders/medium/medium.glsl"
 #define RADIALS_AT 4
 #define RADIALS_STORAGE
@@ -55,7 +58,11 @@ vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
         ivec3 q = clamp(ivec3(at), ivec3(0), box.dims - 1);
         for (uint ch = 0u; ch < 3u; ch++) {
             vec4 cell = cell_of(q, ch);
-            float f = delta_fraction(phase_of_delta_cosine(cell.z));
+            phase p = phase_of_delta_cosine(cell.z);
+            if (PHASE_TABLED && medium.phase[ch].table != 0u) {
+                p = medium.phase[ch];
+            }
+            float f = delta_fraction(p);
             depth[ch] += ds * cell.x * f / (1.0 - f);
         }
     }

@@ -31,7 +31,7 @@ tms_row tms_row_of(uint row)
 {
     phase p = lut.phase[row];
     return tms_row((float(row * TYN_TMS_CONES) + 0.5) / float(lut.num_rows * TYN_TMS_CONES),
-                   tms_depth_scale(delta_fraction(p)), phase_mean_cosine(p) < 0.0 ? -1.0 : 1.0);
+                   tms_depth_scale(delta_fraction(p)), phase_is_backward(p) ? -1.0 : 1.0);
 }
 
 // Mode DENSITY.

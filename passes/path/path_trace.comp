@@ -6,11 +6,11 @@
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
-TYN_UNIFORM(17, camera, camera_block camera_in);
-TYN_WRITE(18, partials, path_partial partials[]);
-TYN_UPDATE(19, counters, counters_block counters);
-TYN_WRITE(20, layers, path_partial_layers layers[]);
-TYN_UPDATE(21, queue, uint taken);
+TYN_UNIFORM(18, camera, camera_block camera_in);
+TYN_WRITE(19, partials, path_partial partials[]);
+TYN_UPDATE(20, counters, counters_block counters);
+TYN_WRITE(21, layers, path_partial_layers layers[]);
+TYN_UPDATE(22, queue, uint taken);
 
 #include "shaders/path/path.glsl"
 

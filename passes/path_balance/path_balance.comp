@@ -13,9 +13,9 @@
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
-TYN_WRITE(17, partials, path_balance_partial partials[]);
-TYN_UPDATE(18, counters, counters_block counters);
-TYN_READ(19, areas, surface_table areas; surface_cell area_cells[]);
+TYN_WRITE(18, partials, path_balance_partial partials[]);
+TYN_UPDATE(19, counters, counters_block counters);
+TYN_READ(20, areas, surface_table areas; surface_cell area_cells[]);
 
 const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LIGHT = 3u;
 uint place;

@@ -16,8 +16,8 @@
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
-TYN_WRITE(17, partials, float partials[]); // [value][thread]: mean over the thread's paths, W
-TYN_UPDATE(18, counters, counters_block counters);
+TYN_WRITE(18, partials, float partials[]); // [value][thread]: mean over the thread's paths, W
+TYN_UPDATE(19, counters, counters_block counters);
 
 #include "shaders/path/path.glsl"
 #include "shaders/path/path_entry.glsl"

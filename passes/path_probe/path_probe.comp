@@ -7,9 +7,9 @@
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
-TYN_READ(17, points, vec3 points[]);
-TYN_WRITE(18, partials, path_probe_partial partials[]);
-TYN_UPDATE(19, counters, counters_block counters);
+TYN_READ(18, points, vec3 points[]);
+TYN_WRITE(19, partials, path_probe_partial partials[]);
+TYN_UPDATE(20, counters, counters_block counters);
 
 #include "shaders/path/path.glsl"
 #include "shaders/path/path_heading.glsl"

@@ -19,11 +19,11 @@ const bool PROBE = false;
 #include "shaders/photon/photon_args.h"
 #include "shaders/lattice/lattice.glsl"
 
-TYN_UPDATE(17, ring, photon_ring ring; int words[]);
-TYN_UPDATE(18, counters, counters_block counters);
-TYN_READ(19, plan, photon_trace_plan plan_in);
-TYN_UPDATE(20, flux, int flux_words[]);
-TYN_READ(21, ordinates, ordinates_block ordinates);
+TYN_UPDATE(18, ring, photon_ring ring; int words[]);
+TYN_UPDATE(19, counters, counters_block counters);
+TYN_READ(20, plan, photon_trace_plan plan_in);
+TYN_UPDATE(21, flux, int flux_words[]);
+TYN_READ(22, ordinates, ordinates_block ordinates);
 
 #include "shaders/path/path.glsl"
 photon_trace_plan plan;

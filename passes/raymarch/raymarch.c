@@ -22,7 +22,7 @@ enum {
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 31 powers of two with this sum are all different.
+// 32 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -32,8 +32,8 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
                        RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE +
-                       RAYMARCH_NOISE ==
-                   (1u << 31) - 1,
+                       RAYMARCH_NOISE + RAYMARCH_TABLED ==
+                   UINT32_MAX,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -193,6 +193,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
         features |= p->layers & layers[k].layer ? layers[k].feature : 0;
     }
     features |= p->kernels ? RAYMARCH_KERNELS : 0;
+    features |= p->tabled ? RAYMARCH_TABLED : 0;
     features |= tyn_rec_extent(r, RAYMARCH_PORT_LUT).x > TYN_LUT_DEPTHS ? RAYMARCH_SOFT_SUNS : 0;
     features |= field ? RAYMARCH_FIELD : 0;
     features |= p->field != TYN_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;

@@ -15,6 +15,7 @@ typedef struct tyn_raymarch_params {
     float noise_size;   // "raymarch.noise_size", voxels
     // Set by the method.
     uint32_t grey;      // 1: one medium (mode DENSITY), equal in all channels
+    uint32_t tabled;    // 1: some phase function of the medium is a table (`phases`)
     uint32_t mode;      // TYN_MEDIUM_*
     uint32_t num_suns;  // 0..4
     uint32_t num_lamps; // that are marched: the first of `radials`
@@ -69,6 +70,7 @@ enum {
     X(RAYMARCH, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights first"), \
     TYN_BEAMS(X##_OPTIONAL, RAYMARCH), \
     TYN_RADIALS(X##_OPTIONAL, RAYMARCH), \
+    X(RAYMARCH, PHASES, phases, OPTIONAL, BUFFER, "tables of phase functions"), \
     X(RAYMARCH, LUT, lut, OPTIONAL, IMAGE_2D, "of scatter_lut: with `kernels` and suns"), \
     X(RAYMARCH, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block: with `kernels` and suns"), \
     X(RAYMARCH, INSCATTER, inscatter, OPTIONAL, IMAGE_3D, "of merge; without it suns and emission only"), \

@@ -14,6 +14,8 @@ layout(constant_id = 4) const uint raymarch_num_near = 0u; // lamps after these 
 layout(constant_id = 5) const uint raymarch_num_shapes = 1u;
 layout(constant_id = 6) const uint raymarch_kind = 0u; // of all shapes, or TYN_SHAPE_KIND_ANY
 
+#define PHASE_TABLES 40
+#define PHASE_TABLED ((raymarch_features & RAYMARCH_TABLED) != 0u)
 #define MEDIUM_AT 0
 #define BEAMS_AT 5
 #define SCATTER_LUT 9

@@ -34,7 +34,7 @@ static uint32_t num_terms(tyn_phase phase)
 static uint32_t num_tms_terms(tyn_phase phase)
 {
     uint32_t terms = num_terms(phase);
-    uint32_t most = tyn_phase_mean_cosine(phase) > 0 ? 192 : TYN_TMS_MAX_TERMS;
+    uint32_t most = tyn_phase_mean_cosine(phase) > 0 && !phase.table ? 192 : TYN_TMS_MAX_TERMS;
     return terms < most ? terms : most;
 }
 
@@ -106,14 +106,15 @@ static uint32_t make_rows(const tyn_scatter_lut_params *p, struct lut_block *blo
 // ---- moments --------------------------------------------------------------------------------------
 
 // Completes a row and writes its moments outside and inside the lobe.
-static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
+static void make_moments(struct lut_block *block, const tyn_phase_table *tables, uint32_t r,
+                         float (*out)[2])
 {
     double all[MAX_TERMS], lobe[MAX_TERMS] = {0};
     uint32_t terms = row_terms(block, r);
     if (tyn_phase_has_lobe(block->phase[r])) {
-        block->theta_1[r] = (float)tyn_phase_lobe_moments(block->phase[r], 1, lobe, terms);
+        block->theta_1[r] = (float)tyn_phase_lobe_moments(tables, block->phase[r], 1, lobe, terms);
     }
-    tyn_phase_moments(block->phase[r], all, terms);
+    tyn_phase_moments(tables, block->phase[r], all, terms);
     for (uint32_t l = 0; l < terms; l++) {
         out[l][0] = (float)(all[l] - lobe[l]);
         out[l][1] = (float)lobe[l];
@@ -182,7 +183,7 @@ static void record(tyn_recorder *r, const void *params)
         if (terms > 0) {
             float moments[MAX_TERMS][2];
             if (tyn_rec_live(r)) {
-                make_moments(&block, row, moments);
+                make_moments(&block, p->tables, row, moments);
             }
             tyn_rec_update(r, SCATTER_LUT_PORT_MOMENTS, block.first_term[row] * sizeof(moments[0]),
                            moments, terms * sizeof(moments[0]));

@@ -7,6 +7,7 @@
 typedef struct tyn_scatter_lut_params {
     uint32_t mode;                       // TYN_MEDIUM_*
     tyn_phase phase[3];                  // DENSITY: of the colour channels
+    const tyn_phase_table *tables;       // of these, if some are tables
     float g_max;                         // COEFFICIENTS: largest mean cosine of any medium
     uint32_t tms;                        // 1: also make `tms`
     uint32_t num_suns;                   // 0..4

@@ -70,7 +70,7 @@ void main()
                 vec2 moment = moments[lut.first_term[row] + l];
                 float factor = blur > 0.0 ? blurred_coefficient(float(l), moment.y, f, tau, blur)
                                           : coefficient(float(l), moment.y, f, tau);
-                factor *= phase_mean_cosine(scattering) < 0.0 && (l & 1u) != 0u ? -1.0 : 1.0; // seen from behind
+                factor *= phase_is_backward(scattering) && (l & 1u) != 0u ? -1.0 : 1.0; // seen from behind
                 chunk[i] = vec4(moment * factor,
                                 vec2(float(l), float(2u * l + 1u)) / float(l + 1u));
             }

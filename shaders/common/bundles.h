@@ -106,6 +106,7 @@
     X(P, EMITTERS, emitters, OPTIONAL, BUFFER, \
         "struct surface_table and cells: alias table of the emissive triangles' power"), \
     X(P, COLORS, colors, OPTIONAL, IMAGE_3D, "grids of colours of all media"), \
+    X(P, PHASES, phases, OPTIONAL, BUFFER, "tables of phase functions (phase_table.glsl)"), \
     TYN_GEOMETRY(X##_OPTIONAL, P), \
     TYN_MATERIALS(X##_OPTIONAL, P)
 // clang-format on

@@ -1,4 +1,4 @@
-// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 16), and
+// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 17), and
 // what it is specialised to.
 #ifndef TYN_PATH_RESOURCES_GLSL
 #define TYN_PATH_RESOURCES_GLSL
@@ -31,6 +31,8 @@ TYN_READ(7, env_table, env_table_block env_table; env_cell env_cells[]);
 #define GEOMETRY_AT 8
 #define MATERIALS_AT 12
 #include "shaders/surfaces/surfaces.glsl"
+#define PHASE_TABLES 17
+#define PHASE_TABLED ((FLAGS & TYN_PATH_TABLED) != 0u)
 TYN_READ(15, emitters, surface_table emitters; surface_cell emitter_cells[]);
 layout(set = 0, binding = 16) uniform sampler3D colors;
 TYN_ARGS(path_args args_in);

@@ -19,6 +19,7 @@ typedef struct tyn_path_params {
     uint32_t num_shapes;
     uint32_t sphere; // the only shape is one
     uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
+    uint32_t tabled; // some phase function is a table
     uint32_t repeat; // some axis is periodic
     uint32_t triangles;
     uint32_t textures; // of their materials
@@ -101,7 +102,7 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
     spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
     spec[TYN_PATH_SPEC_FEW] = p->triangles <= TYN_SURFACE_FEW ? p->triangles : 0;
     spec[TYN_PATH_SPEC_FLAGS] =
-        (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
+        (p->tabled ? TYN_PATH_TABLED : 0) | (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
         (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
         (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |

@@ -1,25 +1,42 @@
-// phase.glsl -- the phase function of a medium: evaluation, sampling, delta scaling. No bindings.
+// phase.glsl -- the phase function of a medium: evaluation, sampling, delta scaling.
 //
 // All that shaders know of the parameters of a phase function is in this folder; its twin in C is engine/scene/phase.c.
-// It is a Henyey-Greenstein lobe. Arrays of three are of the colour channels.
+// It is a Henyey-Greenstein lobe, or a table. Arrays of three are of the colour channels.
+//
+// No bindings, but where tables are evaluated: a kernel defines PHASE_TABLES, the binding of its port "phases", and
+// PHASE_TABLED, an expression that is false if no medium has a table. In others a table counts as the Henyey-Greenstein
+// lobe of its mean cosine wherever it is evaluated; what delta scaling takes of it is known everywhere.
 #ifndef TYN_PHASE_GLSL
 #define TYN_PHASE_GLSL
 #include "hg.glsl"
 #include "phase_args.h"
+#ifdef PHASE_TABLES
+#include "phase_table.glsl"
+#endif
 
 // ---- evaluation ---------------------------------------------------------------------------------
 
 // The phase function, 1/sr, from 1 - mu; mu = cosine of the scattering angle. Give 1 - mu = |v - d|^2 / 2, which does
 // not cancel near the peak of a narrow lobe. Averaged over a light that is a soft round spot around its direction, with
-// the mean cosine `spot`: 1 = a point.
+// the mean cosine `spot`: 1 = a point. Tables are not averaged.
 float phase_near(phase p, float spot, float one_minus_mu)
 {
+#ifdef PHASE_TABLES
+    if (PHASE_TABLED && p.table != 0u) {
+        return phase_table_near(p.table, one_minus_mu);
+    }
+#endif
     return hg_near(p.g * spot, one_minus_mu);
 }
 
 // 1 - mu of a scattering angle that is distributed as the phase function, from a uniform number.
 float phase_sample(phase p, float u)
 {
+#ifdef PHASE_TABLES
+    if (PHASE_TABLED && p.table != 0u) {
+        return phase_table_sample(p.table, u);
+    }
+#endif
     return hg_sample(p.g, u);
 }
 
@@ -38,7 +55,7 @@ vec3 phase_mean_cosine(phase p[3])
 // The Henyey-Greenstein phase function of a mean cosine: where media are unequal their image "g" holds mean cosines.
 phase phase_of_mean_cosine(float g)
 {
-    return phase(g);
+    return phase(g, 0u, 0.0, 0.0, 0.0, 0u);
 }
 
 phase[3] phase_of_mean_cosine(vec3 g)
@@ -51,7 +68,13 @@ phase[3] phase_of_mean_cosine(vec3 g)
 // Of the channel whose component of `channel` is 1, the others 0.
 phase phase_select(phase p[3], vec3 channel)
 {
-    return phase(dot(vec3(p[0].g, p[1].g, p[2].g), channel));
+    phase of = phase_of_mean_cosine(dot(vec3(p[0].g, p[1].g, p[2].g), channel));
+#ifdef PHASE_TABLES
+    if (PHASE_TABLED) {
+        of = channel.x > 0.5 ? p[0] : channel.y > 0.5 ? p[1] : p[2];
+    }
+#endif
+    return of;
 }
 
 // ---- delta scaling ------------------------------------------------------------------------------
@@ -59,7 +82,7 @@ phase phase_select(phase p[3], vec3 channel)
 // Part of the scattering that counts as going straight on.
 float delta_fraction(phase p)
 {
-    return delta_fraction(p.g);
+    return p.table != 0u ? p.delta : delta_fraction(p.g);
 }
 
 vec3 delta_fraction(phase p[3])
@@ -67,10 +90,10 @@ vec3 delta_fraction(phase p[3])
     return vec3(delta_fraction(p[0]), delta_fraction(p[1]), delta_fraction(p[2]));
 }
 
-// Mean cosine of what is left, (g - f) / (1 - f): g / (1 + g) for g > 0, else g.
+// Mean cosine of what is left, (g - f) / (1 - f): of a lobe g / (1 + g) for g > 0, else g.
 float delta_cosine(phase p)
 {
-    return p.g / (1.0 + max(p.g, 0.0));
+    return p.table != 0u ? (p.g - p.delta) / (1.0 - p.delta) : p.g / (1.0 + max(p.g, 0.0));
 }
 
 vec3 delta_cosine(phase p[3])
@@ -81,22 +104,30 @@ vec3 delta_cosine(phase p[3])
 // The Henyey-Greenstein phase function of which that mean cosine is left.
 phase phase_of_delta_cosine(float scaled)
 {
-    return phase(scaled > 0.0 ? min(scaled / (1.0 - scaled), HG_MAX) : scaled);
+    return phase_of_mean_cosine(scaled > 0.0 ? min(scaled / (1.0 - scaled), HG_MAX) : scaled);
 }
 
 // Mean cosine of the narrowest forward lobe, >= 0.
 float phase_forward_cosine(phase p)
 {
-    return max(p.g, 0.0);
+    return p.table != 0u ? p.forward : max(p.g, 0.0);
+}
+
+// A lobe that points backward: its moments are those of the lobe as it is seen from behind (tyn_phase_is_backward).
+bool phase_is_backward(phase p)
+{
+    return p.table == 0u && p.g < 0.0;
 }
 
 // A lobe narrower than HG_MAX is replaced by that one with as much less scattering that the transport
 // coefficient sigma_s (1 - g) stays: the widths differ by a third of a degree. What is seen *through*
-// the medium (transmittance, background) keeps the true sigma_s.
+// the medium (transmittance, background) keeps the true sigma_s. Tables are as they are.
 void similarity_clamp(inout float sigma_s, inout phase p)
 {
-    sigma_s *= min(1.0, (1.0 - p.g) / (1.0 - HG_MAX));
-    p.g = min(p.g, HG_MAX);
+    if (p.table == 0u) {
+        sigma_s *= min(1.0, (1.0 - p.g) / (1.0 - HG_MAX));
+        p.g = min(p.g, HG_MAX);
+    }
 }
 
 void similarity_clamp(inout vec3 sigma_s, inout phase p[3])

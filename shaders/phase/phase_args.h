@@ -7,8 +7,12 @@
 #else
 struct phase { // as tyn_phase of <tyndall/scene.h>
     float g;
+    uint table;
+    float delta, forward, backward;
+    uint key;
 };
 #define tyn_phase phase
+#define TYN_PHASE_NODES 2048
 #endif
 
 #endif

@@ -194,6 +194,44 @@ static void volumes(void **state)
     tyn_scene_finish(&s);
 }
 
+// Every form of a phase function, for all channels or for each.
+static void phases(void **state)
+{
+    static const struct {
+        const char *phase;
+        float g[3];
+        uint32_t tables[3];
+    } cases[] = {
+        {"{'lobes': [{'g': 0.3}]}", {0.3f, 0.3f, 0.3f}, {0, 0, 0}},
+        {"{'lobes': [{'g': 0.85, 'weight': 0.9}, {'g': -0.3, 'weight': 0.1}]}",
+         {0.735f, 0.735f, 0.735f},
+         {1, 1, 1}},
+        {"{'lobes': [{'alpha': 1}]}", {0, 0, 0}, {1, 1, 1}},
+        {"{'droplets': 10}", {0.864164f, 0.864164f, 0.864164f}, {1, 1, 1}},
+        {"{'legendre': [1, 0.25, 0.1]}", {0.25f, 0.25f, 0.25f}, {1, 1, 1}},
+        {"{'angles': [0, 180], 'values': [0.07957747, 0.07957747]}", {0, 0, 0}, {1, 1, 1}},
+        {"[{'droplets': 10}, {'legendre': [1, -0.25]}, {'lobes': [{'g': 0.6}]}]",
+         {0.864164f, -0.25f, 0.6f},
+         {1, 2, 0}},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[1024];
+        tyn_scene s;
+        snprintf(text, sizeof text,
+                 ASSET ", 'extensions': {'TYN_participating_media': {'media': [{'phase': %s}]}}}",
+                 cases[i].phase);
+        load(&s, quoted(text));
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabsf(s.media[0].phase[c].g - cases[i].g[c]) < 1e-5f);
+            assert_int_equal(s.media[0].phase[c].table, cases[i].tables[c]);
+        }
+        assert_int_equal(tyn_scene_check(&s, NULL), TYN_OK);
+        assert_int_equal(s.num_warnings, 0);
+        tyn_scene_finish(&s);
+    }
+}
+
 // A member of the two extensions that is not known is named, the first of them; what any object may have is no such.
 static void unknown_members(void **state)
 {
@@ -204,19 +242,22 @@ static void unknown_members(void **state)
          NULL},
         {"'scatering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatering: not known and left out; known "
-         "here: scattering absorption emission density temperature emission_density albedo "
+         "here: scattering absorption emission density temperature emission_density albedo phase "
          "anisotropy"},
         {"'absorption': 1", "'Shape': 'sphere'", "'turn': 3",
          "nodes[0].extensions.TYN_participating_media.Shape and 1 more: not known and left out; "
          "known here: medium shape repeat"},
         {"'density scattering': 1", "", "",
          "extensions.TYN_participating_media.media[0].density scattering: not known and left out; "
-         "known here: scattering absorption emission density temperature emission_density albedo "
+         "known here: scattering absorption emission density temperature emission_density albedo phase "
          "anisotropy"},
         {"'scatt\\nering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatt?ering: not known and left out; known "
-         "here: scattering absorption emission density temperature emission_density albedo "
+         "here: scattering absorption emission density temperature emission_density albedo phase "
          "anisotropy"},
+        {"'phase': [{'droplets': 9}, {'droplets': 9}, {'lobes': [{'G': 0.5}]}]", "", "",
+         "extensions.TYN_participating_media.media[0].phase[2].lobes[0].G: not known and left out; "
+         "known here: weight g alpha"},
         {"", "", "'Radiance': [1, 1, 1]",
          "extensions.TYN_environment_map.environments[0].Radiance: not known and left out; known "
          "here: uri radiance rotation"},
@@ -426,10 +467,10 @@ static void long_chain(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes),        cmocka_unit_test(camera_order),
-        cmocka_unit_test(volumes),      cmocka_unit_test(unknown_members),
-        cmocka_unit_test(environments), cmocka_unit_test(numbered_files),
-        cmocka_unit_test(containers),   cmocka_unit_test(files),
-        cmocka_unit_test(long_chain)};
+        cmocka_unit_test(nodes),          cmocka_unit_test(camera_order),
+        cmocka_unit_test(volumes),        cmocka_unit_test(unknown_members),
+        cmocka_unit_test(phases),         cmocka_unit_test(environments),
+        cmocka_unit_test(numbered_files), cmocka_unit_test(containers),
+        cmocka_unit_test(files),          cmocka_unit_test(long_chain)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

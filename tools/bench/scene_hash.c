@@ -3,6 +3,17 @@
 
 #define HASH(value, seed) text_hash(&(value), sizeof(value), seed)
 
+// Of lobes by their g alone.
+static uint64_t hash_phase(const tyn_phase phase[3], uint64_t key)
+{
+    const float g[3] = {phase[0].g, phase[1].g, phase[2].g};
+    key = HASH(g, key);
+    for (int c = 0; c < 3; c++) {
+        key = phase[c].table ? HASH(phase[c].key, key) : key;
+    }
+    return key;
+}
+
 static uint64_t hash_media(const tyn_scene *scene, uint64_t key)
 {
     for (uint32_t i = 0; i < scene->num_volumes; i++) {
@@ -13,7 +24,8 @@ static uint64_t hash_media(const tyn_scene *scene, uint64_t key)
     }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         const tyn_medium *m = &scene->media[i];
-        key = HASH(m->sigma_s, HASH(m->sigma_a, HASH(m->phase, HASH(m->emission, key))));
+        key = hash_phase(m->phase, HASH(m->emission, key));
+        key = HASH(m->sigma_s, HASH(m->sigma_a, key));
         key = HASH(m->density_scale, HASH(m->volume, key));
         if (m->emission_grid || m->radiance_grid || m->albedo_grid) {
             key = HASH(m->emission_grid, HASH(m->radiance_grid, HASH(m->albedo_grid, key)));

@@ -100,6 +100,14 @@ TYN_API void tyn_limit_say(const tyn_limit *limit, const tyn_limit_text *text, c
 
 // ---- methods ---------------------------------------------------------------------------------
 
+// Phase functions that a method knows beside Henyey-Greenstein lobes; others count as the lobe of their mean cosine, with a
+// warning.
+typedef enum tyn_known_phases {
+    TYN_PHASES_LOBES = 0,
+    TYN_PHASES_OF_ONE_MEDIUM, // tables, where all shapes have the same coefficients
+    TYN_PHASES_ALL,
+} tyn_known_phases;
+
 typedef struct tyn_method_info {
     const char *name, *summary;
     const tyn_pass_desc *const *passes; // NULL-terminated, in the order of the frame
@@ -108,6 +116,7 @@ typedef struct tyn_method_info {
     bool traces_rays; // surfaces need a hierarchy: tyn_surfaces_build_nodes of <tyndall/io.h>
     bool reference;   // right but for noise: the others are judged by it
     bool single_only; // its answer is the light that has scattered once
+    tyn_known_phases phases;
     const tyn_limit *limits;
     const char *
         plugin; // which one has brought it; "" = it was registered by the host; NULL: it is the library's

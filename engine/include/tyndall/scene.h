@@ -10,6 +10,7 @@ extern "C" {
 #endif
 
 enum { TYN_MAX_MEDIA = 16, TYN_MAX_SHAPES = 64, TYN_MAX_LIGHTS = 64 };
+enum { TYN_MAX_PHASE_TABLES = 3 * TYN_MAX_MEDIA };
 
 // A dense density grid. Values sit at voxel centres, trilinear between them, clamped to the edge
 // value in the outer half voxel. `data` is x fastest, then y, z; >= 0 and finite.
@@ -42,9 +43,40 @@ typedef struct tyn_color_grid {
 TYN_API void tyn_blackbody(double kelvins, float rgb[3]);
 
 // The phase function of one colour channel: how scattered light is spread over angles. {0} is isotropic.
+// {.g = 0.8f} is a Henyey-Greenstein lobe; any other is made by tyn_scene_add_phase, which sets all members.
 typedef struct tyn_phase {
-    float g; // mean cosine of the Henyey-Greenstein phase function, (-1, 1)
+    float g;        // mean cosine, (-1, 1)
+    uint32_t table; // 1 + index into scene.phase_tables; 0: the Henyey-Greenstein lobe of g
+    // Of what is in the table; else 0.
+    float delta;             // part of it that delta scaling counts as going straight on, [0, 1)
+    float forward, backward; // g of the Henyey-Greenstein lobes that are as high straight on and straight back, [0, 1)
+    uint32_t key;            // another for other values
 } tyn_phase;
+
+// A phase function as values at the angles 4 atan((k / (TYN_PHASE_NODES - 1))^4), closest where lobes are narrow;
+// between them it is linear in the cosine. >= 0 and finite; its integral over the sphere is 1.
+enum { TYN_PHASE_NODES = 2048 };
+typedef struct tyn_phase_table {
+    float values[TYN_PHASE_NODES]; // 1/sr
+} tyn_phase_table;
+
+// A lobe of Draine (2003): (1 - g^2) / (4 pi s^3) (1 + alpha mu^2) / (1 + alpha (1 + 2 g^2) / 3), s^2 = 1 + g^2 - 2 g mu,
+// mu the cosine of the scattering angle. alpha 0: Henyey-Greenstein; 1: Cornette and Shanks (1992), of g 0: Rayleigh.
+typedef struct tyn_phase_lobe {
+    float weight; // >= 0; those of a phase function add up to 1, within 1 %
+    float g;      // of the Henyey-Greenstein factor, -0.999 to 0.999
+    float alpha;  // >= 0
+} tyn_phase_lobe;
+
+// What a phase function is made of. One kind of arrays is given, the others are NULL.
+enum { TYN_MAX_PHASE_NUMBERS = 65536, TYN_MAX_PHASE_LOBES = 16 };
+typedef struct tyn_phase_form {
+    uint32_t count;              // of lobes, moments, or angles with their values
+    const tyn_phase_lobe *lobes; // their sum
+    const double *moments; // Legendre moments chi_l of p = sum_l (2 l + 1) / (4 pi) chi_l P_l; chi_0 is 1, within 1 %
+    const double *angles;  // radians, from 0 to pi, increasing
+    const double *values;  // at the angles, 1/sr, linear between them; integral over the sphere 1, within 1 %
+} tyn_phase_form;
 
 // Coefficients at density 1, linear RGB.
 typedef struct tyn_medium {
@@ -226,6 +258,8 @@ typedef struct tyn_scene {
     uint32_t num_volumes;
     tyn_color_grid *color_grids;
     uint32_t num_color_grids;
+    tyn_phase_table *phase_tables; // from malloc
+    uint32_t num_phase_tables;
     tyn_medium media[TYN_MAX_MEDIA];
     uint32_t num_media;
     tyn_shape shapes[TYN_MAX_SHAPES];
@@ -269,6 +303,15 @@ typedef struct tyn_phase_parameter {
 TYN_API const tyn_phase_parameter *tyn_phase_parameters(void); // the last has no name
 TYN_API void tyn_phase_get(const tyn_phase phase[3], const tyn_phase_parameter *p, float values[3]);
 TYN_API void tyn_phase_set(tyn_phase phase[3], const tyn_phase_parameter *p, const float values[3]);
+
+// Adds the table of a phase function, if the scene does not have it yet, and writes the phase function; of one
+// Henyey-Greenstein lobe there is no table. It is scaled to an integral of 1. What is wrong is one log line ("media[0].phase:
+// ...", after `of`) and TYN_ERR_PARAMS.
+TYN_API tyn_result tyn_scene_add_phase(tyn_scene *scene, const tyn_phase_form *form, const char *of,
+                                       tyn_phase *phase, const tyn_log *log);
+// Water droplets of that diameter, 5 to 50 micrometres, in visible light: the fit of Jendersie and d'Eon, "An approximate
+// Mie scattering function for fog and cloud rendering" (SIGGRAPH 2023 Talks). TYN_ERR_PARAMS beyond that range.
+TYN_API tyn_result tyn_phase_droplets(double micrometres, tyn_phase_lobe lobes[2]);
 
 // Checks every number of the scene; the first fault is one log line.
 TYN_API tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log);

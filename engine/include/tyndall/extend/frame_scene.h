@@ -42,6 +42,8 @@ typedef struct tyn_frame_scene {
     tyn_lights lights;
     struct camera_block camera;
     struct env_block environment; // without one its radiances are 0
+    // Of the phase functions of `medium` and `shapes`; NULL: all are Henyey-Greenstein lobes, if the method knows no others.
+    const tyn_phase_table *phase_tables;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
     bool grey;   // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
     bool emissive; // a medium emits
