@@ -62,6 +62,9 @@ static int read_one(const char *path)
     const tyn_log log = {print, &lines, TYN_LOG_ERROR};
     const struct rlimit limit = {memory, memory};
     tyn_volume volume;
+    tyn_color_grid colors;
+    tyn_volume_grid *grids;
+    uint32_t count;
 #if !defined(__SANITIZE_ADDRESS__)
     setrlimit(RLIMIT_AS, &limit);
 #else
@@ -70,7 +73,19 @@ static int read_one(const char *path)
     alarm(SECONDS);
     tyn_result r = tyn_volume_load(&volume, path, NULL, NULL, &log);
     tyn_volume_finish(&volume);
-    return r == TYN_OK && lines == 0 ? 0 : r != TYN_OK && lines == 1 ? 2 : 3;
+    bool told = lines == (r != TYN_OK);
+    lines = 0;
+    tyn_result more = tyn_volume_list(path, &grids, &count, &log);
+    told = told && lines == (more != TYN_OK);
+    for (uint32_t i = 0; more == TYN_OK && i < count && i < 8; i++) {
+        lines = 0;
+        more = tyn_color_grid_load(&colors, path, grids[i].name, NULL, NULL, &log);
+        told = told && lines == (more != TYN_OK);
+        tyn_color_grid_finish(&colors);
+        more = TYN_OK; // the next may be sound
+    }
+    free(grids);
+    return !told ? 3 : r == TYN_OK ? 0 : 2;
 }
 
 int main(int argc, char **argv)

@@ -11,6 +11,9 @@ awk 'BEGIN { n = 24; for (z = 0; z < n; z++) for (y = 0; y < n; y++) for (x = 0;
 works info density.vdb
 "$helpers/vdb_mutate" density.vdb 160 >list || fail "$(grep FAILED list)"
 tail -1 list
+"$helpers/fire_make" fire.vdb hot.vdb || fail "fire_make: exit $?"
+"$helpers/vdb_mutate" fire.vdb 160 >list || fail "$(grep FAILED list)" # vectors, and several grids
+tail -1 list
 shared=${TYN_SHARED:-$source/../shared}/data/smoke.vdb
 if [ -e "$shared" ]; then
     "$helpers/vdb_mutate" "$shared" 80 >list || fail "$(grep FAILED list)"

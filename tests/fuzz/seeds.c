@@ -24,9 +24,9 @@ static float ramp(int32_t i, int32_t j, int32_t k)
 
 static void put_nvdb(void)
 {
-    static const uint32_t types[] = {NVDB_FLOAT, NVDB_HALF, NVDB_FP4,
-                                     NVDB_FP8,   NVDB_FP16, NVDB_FPN};
-    for (uint32_t t = 0; t < 6; t++) {
+    static const uint32_t types[] = {NVDB_FLOAT, NVDB_VEC3F, NVDB_HALF, NVDB_FP4,
+                                     NVDB_FP8,   NVDB_FP16,  NVDB_FPN};
+    for (uint32_t t = 0; t < sizeof types / sizeof types[0]; t++) {
         for (uint32_t codec = NVDB_ZIP; codec <= NVDB_BLOSC; codec++) {
             nvdb_spec spec = {"density", types[t], codec, 2,    {-3, 2, 1}, {9, 8, 6},
                               ramp,      0.0f,     {0},   0.0f, 0.1};

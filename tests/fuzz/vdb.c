@@ -1,6 +1,7 @@
 // vdb.c -- libFuzzer harness: OpenVDB files, checked and read through the library.
 #include "io/vdb.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -15,6 +16,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (fd >= 0 && write(fd, data, size) == (ssize_t)size &&
         tyn_vdb_load(&volume, path, NULL, &clamped, NULL) == TYN_OK) {
         tyn_volume_finish(&volume);
+        tyn_grid_job list = {.use = TYN_GRID_LIST};
+        if (tyn_vdb_read(&list, path) == TYN_OK) {
+            free(list.list);
+        }
     }
     close(fd);
     return 0;
