@@ -189,10 +189,61 @@ static void check(void **state)
     }
 }
 
+// Grids of colours: each fault of them is one line, and an albedo from the command line drops a grid of it.
+static void check_color_grids(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "color_grids[0].size[1] = 0: must be 1 to 65536",
+        "color_grids[0].channels = 2: must be 1 or 3",
+        "color_grids[0].data = NULL: required",
+        "color_grids[0].max = nan: must be >= 0",
+        "color_grids[0].data[4] = nan: must be between 0 and max = 1",
+        "color_grids[0].data[0] = -1: must be between 0 and max = 1",
+        "color_grids[0].data[5] = 2: must be between 0 and max = 1",
+        "media[0].radiance_grid = 2: there are 1 color_grids",
+        "media[0].albedo_grid: color_grids[0].max = 4: an albedo must be 0 to 1",
+        "color_grids = NULL, but there are to be 1"};
+    for (int fault = -1; fault < 10; fault++) {
+        tyn_scene s;
+        float values[6] = {0, 0.5f, 1, 0, 0.25f, 1};
+        tyn_color_grid grid = {.size = {2, 1, 1}, .channels = 3, .data = values, .max = 1};
+        io_log log;
+        io_log_init(&log);
+        fill(&s);
+        s.color_grids = &grid;
+        s.num_color_grids = 1;
+        s.media[0].albedo_grid = s.media[0].emission_grid = s.media[0].radiance_grid = 1;
+        const float wrong = fault == 4 ? NAN : fault == 5 ? -1 : 2;
+        grid.size[1] = fault != 0;
+        grid.channels = fault == 1 ? 2 : 3;
+        grid.data = fault == 2 ? NULL : values;
+        grid.max = fault == 3 ? NAN : fault == 8 ? 4 : 1;
+        values[fault == 4 ? 4 : fault == 5 ? 0 : 5] = fault >= 4 && fault <= 6 ? wrong : 1;
+        s.media[0].radiance_grid += fault == 7;
+        s.color_grids = fault == 9 ? NULL : &grid;
+        assert_int_equal(tyn_scene_check(&s, &log.log), fault < 0 ? TYN_OK : TYN_ERR_PARAMS);
+        assert_int_equal(log.errors, fault >= 0);
+        if (fault >= 0 && !strstr(log.last, lines[fault])) {
+            print_error("%s\n", log.last);
+        }
+        assert_true(fault < 0 || strstr(log.last, lines[fault]));
+    }
+    tyn_scene s;
+    fill(&s);
+    s.media[0].albedo_grid = s.media[0].emission_grid = 1;
+    const tyn_medium_override o = {.albedo = (float[]){0.5f, 0.5f, 0.5f}};
+    assert_int_equal(tyn_scene_override(&s, &o, NULL), TYN_OK);
+    assert_true(s.media[0].albedo_grid == 0 && s.media[0].emission_grid == 1);
+    tyn_medium_clear(&s.media[0]);
+    assert_true(s.media[0].emission_grid == 0);
+    tyn_scene_finish(&s);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bounds), cmocka_unit_test(framing),
-                                       cmocka_unit_test(look_at), cmocka_unit_test(override),
-                                       cmocka_unit_test(check)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bounds),   cmocka_unit_test(framing), cmocka_unit_test(look_at),
+        cmocka_unit_test(override), cmocka_unit_test(check),   cmocka_unit_test(check_color_grids)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
