@@ -3,7 +3,7 @@
 //
 // Asserted: pictures of `pop` are within the bound of one-lobe media (pop_path.c), each printed beside that of the lobe of
 // its mean cosine; a table of one lobe gives the lobe's own picture under every kind of light; first scattering of `single`
-// is `path`'s.
+// is `path`'s; what does not know the table gives the picture of the lobe of its mean cosine, to the bit.
 #include "bound.h"
 #include "path_run.h"
 #include "numbers.h"
@@ -151,6 +151,33 @@ static void same_lobe(void **state)
     assert_true(worst < 1e-5);
 }
 
+// Methods that know lobes alone, and media of unequal coefficients, take the lobe of the mean cosine.
+static void lobe_instead(void **state)
+{
+    path_run *r = *state;
+    for (int i = 0; i < 3; i++) {
+        const char *method = i == 0 ? "constellation" : i == 1 ? "pop" : "single";
+        tyn_scene scene;
+        tyn_view view;
+        picture with[2];
+        make_cube(&scene, &view);
+        const tyn_phase phase = phases_add(&scene, PHASES_DROPLETS);
+        if (i > 0) {
+            const tyn_medium other = grey_medium(1, 2, 0);
+            scene_add_box(&scene, &other, (float[]){0, 0, 0}, (float[]){0.5f, 0.5f, 0.5f},
+                          (uint32_t[]){1, 1, 1}, NULL);
+        }
+        for (int table = 0; table < 2; table++) {
+            take(&scene, table ? phase : (tyn_phase){.g = phase.g});
+            picture_render(&with[table], r->dev, method, &scene, &view, NULL, 0);
+        }
+        assert_true(picture_compare(&with[1], &with[0], 1).rel_l1 == 0);
+        picture_free(&with[0]);
+        picture_free(&with[1]);
+        tyn_scene_finish(&scene);
+    }
+}
+
 // ---- first scattering -------------------------------------------------------------------------
 
 // First scattering of `single` against `path`'s layer of it.
@@ -182,7 +209,8 @@ static void first_scattering(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_lobe), cmocka_unit_test(pictures),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_lobe), cmocka_unit_test(lobe_instead),
+                                       cmocka_unit_test(pictures),
                                        cmocka_unit_test(first_scattering)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));

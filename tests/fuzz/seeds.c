@@ -95,6 +95,13 @@ static void put_gltf(void)
     uint8_t glb[2048] = "glTF";
     uint32_t json = (uint32_t)(sizeof text - 1 + 3) / 4 * 4, total = 20 + json, version = 2;
     put("gltf", "text", text, sizeof text - 1);
+    static const char phases[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"extensions\":{\"TYN_participating_media\":{\"media\":["
+        "{\"phase\":{\"lobes\":[{\"weight\":0.9,\"g\":0.8},{\"weight\":0.1,\"g\":-0.3,\"alpha\":1}]"
+        "}},"
+        "{\"phase\":[{\"droplets\":20},{\"legendre\":[1,0.2,0.1]},"
+        "{\"angles\":[0,90,180],\"values\":[0.0796,0.0796,0.0796]}]}]}}}";
+    put("gltf", "phases", phases, sizeof phases - 1);
     memset(glb + 20, ' ', json);
     memcpy(glb + 4, &version, 4);
     memcpy(glb + 8, &total, 4);
