@@ -72,16 +72,19 @@ static void add_source(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     s->lattice.sun_power = refs[LATTICE_SOURCE_PORT_POWER];
 }
 
-// The medium as columns see it: averaged if it is much finer than they are.
-static void average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3],
-                           tyn_medium_refs *medium)
+bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3],
+                        tyn_medium_refs *medium, float texel[3])
 {
     const struct medium_block *m = &job->frame->medium;
     tyn_columns_average_params params;
     tyn_settings_params(job->settings, &tyn_pass_columns_average, &params);
     params.mode = m->mode;
     if (!tyn_columns_average_size(m, dims, params.size)) {
-        return;
+        memcpy(texel, m->voxel, sizeof m->voxel);
+        return false;
+    }
+    for (int a = 0; a < 3; a++) {
+        texel[a] = m->extent[a] / (float)params.size[a];
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
         [COLUMNS_AVERAGE_PORT_DENSITY] = medium->density,
@@ -93,6 +96,7 @@ static void average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims
                                                          : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
     medium->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
     medium->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];
+    return true;
 }
 
 static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
@@ -107,7 +111,8 @@ static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     params.mode = job->frame->medium.mode;
     params.count = s->sky.count;
     tyn_medium_refs medium = s->medium;
-    average_medium(g, job, params.dims, &medium);
+    float texel[3];
+    tyn_average_medium(g, job, params.dims, &medium, texel);
     tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = s->sky.ordinates};
     tyn_connect(refs, COLUMNS_PORT_MEDIUM, medium);
     tyn_graph_add(g, &tyn_pass_columns, &params, refs);
@@ -197,18 +202,32 @@ static void warn_of_cells(const tyn_job *job, const tyn_sources *s, int32_t aske
     }
 }
 
+// The cells of the lattice, without what is in them.
+static void set_shape(const tyn_job *job, int32_t cells, tyn_sources *s)
+{
+    tyn_lattice_shape *shape = &s->lattice.shape;
+    memcpy(shape->extent, job->frame->medium.extent, sizeof shape->extent);
+    memcpy(shape->repeat, job->frame->medium.repeat, sizeof shape->repeat);
+    shape->cells = tyn_lattice_fit(shape->extent, shape->repeat, cells);
+    const float longest = fmaxf(shape->extent[0], fmaxf(shape->extent[1], shape->extent[2]));
+    s->lattice.side = longest / (float)shape->cells;
+}
+
+void tyn_add_columns(tyn_graph *g, const tyn_job *job, int32_t cells, tyn_sources *s)
+{
+    set_shape(job, cells, s);
+    if (s->sky.ordinates.resource) {
+        add_columns(g, job, s);
+    }
+}
+
 void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
                    tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
-    tyn_lattice_shape *shape = &s->lattice.shape;
-    memcpy(shape->extent, frame->medium.extent, sizeof shape->extent);
-    memcpy(shape->repeat, frame->medium.repeat, sizeof shape->repeat);
-    shape->cells = tyn_lattice_fit(shape->extent, shape->repeat, cells);
+    set_shape(job, cells, s);
     warn_of_cells(job, s, cells, setting);
     choose_channels(s, job->scene, frame);
-    float longest = fmaxf(shape->extent[0], fmaxf(shape->extent[1], shape->extent[2]));
-    s->lattice.side = longest / (float)shape->cells;
     add_cells(g, job, s);
     tyn_add_walls(g, job, s);
     if (s->sky.ordinates.resource) {

@@ -22,6 +22,13 @@ static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, t
     *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
 }
 
+tyn_ref tyn_add_sky_sums(tyn_graph *g, const tyn_job *job)
+{
+    tyn_ref sky, sums;
+    add_env_importance(g, job, &sky, &sums);
+    return sums;
+}
+
 tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job)
 {
     const tyn_env_importance_params params = {{0}};
@@ -77,7 +84,7 @@ static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *
     tyn_take(refs, SKY_SHADOWS_PORT_SKY_ATLAS, sky->maps);
 }
 
-// Parts of the ordinates of `params`, with all light of theirs, and what surfaces hide of it. `refs` are those of the
+// Parts of the ordinates of `params`, with all light of theirs, and what surfaces hide of it, if there are any. `refs` are those of the
 // ordinates.
 static void add_directions(tyn_graph *g, const tyn_job *job, tyn_ordinates_params params,
                            tyn_ref refs[TYN_MAX_PORTS], tyn_sky *sky)
@@ -95,12 +102,14 @@ static void add_directions(tyn_graph *g, const tyn_job *job, tyn_ordinates_param
     sky->fan = params.fan;
     sky->directions = refs[ORDINATES_PORT_ORDINATES];
     const uint32_t all = fixed + count * params.fan;
-    add_maps(g, job, all < TYN_ORDINATES_MAX ? all : TYN_ORDINATES_MAX, sky);
+    if (job->frame->num_triangles) {
+        add_maps(g, job, all < TYN_ORDINATES_MAX ? all : TYN_ORDINATES_MAX, sky);
+    }
 }
 
-// `hidden`: surfaces hide some of it.
+// `directions`: of each ordinate, as surfaces hide some of it, or for finer phases.
 static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
-                    bool hidden, tyn_sources *s)
+                    bool directions, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
     const struct env_block *env = &frame->environment;
@@ -131,12 +140,12 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     if (regions && picture && weighted) {
         add_importance(g, job, &s->medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }
-    if (hidden) {
+    if (directions) {
         params.fold = -1.0f; // so that directions are found in the order of the ordinates
     }
     tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
-    if (hidden) {
+    if (directions) {
         add_directions(g, job, params, refs, sky);
     }
     tyn_job_counters(g, job, &tyn_pass_ordinates,
@@ -147,6 +156,11 @@ void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_
                  tyn_sources *s)
 {
     add_sky(g, job, first_sun, can_split, false, s);
+}
+
+void tyn_add_whole_sky(tyn_graph *g, const tyn_job *job, tyn_sources *s)
+{
+    add_sky(g, job, tyn_num_beams(&job->frame->lights), false, true, s);
 }
 
 void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s)

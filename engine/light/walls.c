@@ -76,6 +76,7 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
     if (vpls) { // not lamps alone, whose light VPLs reflect
         tyn_connect(refs, WALL_LIGHT_PORT_RADIALS, s->lamps.radials);
     }
+    params.sky_whole = !s->sky.split;
     if (sky) {
         tyn_connect(refs, WALL_LIGHT_PORT_ORDINATES, s->sky.columns);
         tyn_connect(refs, WALL_LIGHT_PORT_SKY_SEEN, s->sky.seen);

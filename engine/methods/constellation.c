@@ -115,8 +115,9 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
         refs[CONSTELLATION_PORT_MASK] =
             add_mask(g, job, s, &params, refs[CONSTELLATION_PORT_VOXELS]);
     }
-    refs[CONSTELLATION_PORT_LIGHT_LIST] =
-        tyn_add_light_list(g, job, s, (uint32_t)params.lights, &params.num_lights);
+    const tyn_light_list list = tyn_add_light_list(g, job, s, (uint32_t)params.lights, false);
+    refs[CONSTELLATION_PORT_LIGHT_LIST] = list.lights;
+    params.num_lights = list.most;
     params.lamps = job->frame->lights.num_lamps > 0;
     tyn_connect(refs, CONSTELLATION_PORT_MEDIUM, s->medium);
     refs[CONSTELLATION_PORT_MEDIUM] = job->refs.medium;

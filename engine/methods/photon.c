@@ -31,9 +31,13 @@ static bool has_light(const tyn_frame_scene *frame)
 }
 
 // Suns and lamps whose first scattering the march follows along the camera's rays; and what of all light only scatters forward.
+// Of surfaces that reach far beyond the cells virtual lights, for surfaces alone.
 static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_view_inputs *view)
 {
     tyn_add_beams(g, job, s);
+    if (job->frame->num_triangles && tyn_vpls_bounce(job)) {
+        tyn_add_vpls(g, job, s);
+    }
     tyn_add_radials(g, job, s);
     tyn_add_shadows(g, job, s);
     view->sources = s;
@@ -45,46 +49,26 @@ static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_vi
     }
 }
 
-// What the cells hold is light that suns and lamps do not bring straight: surfaces have it from the cells in front of them.
-static void add_surfaces_in_field(tyn_graph *g, const tyn_job *job, tyn_sources s,
-                                  const tyn_walls *walls, tyn_view_inputs *view)
-{
-    s.walls = *walls;
-    tyn_view_inputs surfaces = {.sources = &s, .field = view->field, .no_sky_on_surfaces = true};
-    tyn_add_surfaces(g, job, &surfaces);
-    view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
-}
-
-// Surfaces far beyond the cells have the light of virtual lights instead, and so have those between.
-static void add_surfaces_beyond(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
-                                tyn_view_inputs *view)
-{
-    const tyn_field no_field = {0};
-    tyn_sources own = {.medium = s->medium, .bricks = s->bricks, .distance = s->distance};
-    tyn_view_inputs surfaces = {.sources = &own, .field = &no_field, .no_sky_on_surfaces = true};
-    tyn_add_vpls(g, job, &own);
-    tyn_add_beams(g, job, &own);
-    tyn_add_radials(g, job, &own);
-    tyn_add_shadows(g, job, &own);
-    tyn_add_surfaces(g, job, &surfaces);
-    view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
-}
-
-static void add_surfaces(tyn_graph *g, const tyn_job *job, const tyn_sources *marched,
-                         const tyn_walls *walls, bool first_in_beams, tyn_view_inputs *view)
+// Surfaces have what suns and lamps bring straight, and, if the cells hold all other light, that of the cells in front of them;
+// far beyond the cells that of virtual lights instead.
+static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, const tyn_walls *walls,
+                         bool first_in_beams, tyn_view_inputs *view)
 {
     if (!first_in_beams || !view->field->moments.resource) {
-        tyn_add_surfaces_apart(g, job, *marched, view);
+        tyn_add_surfaces_apart(g, job, s, view);
         return;
     }
     tyn_job_warn_suns(job, "surfaces");
-    if (tyn_vpls_bounce(job)) {
-        add_surfaces_beyond(g, job, marched, view);
-    } else {
-        add_surfaces_in_field(g, job, *marched, walls, view);
+    const tyn_field no_field = {0};
+    const bool beyond = tyn_vpls_bounce(job);
+    if (!beyond) {
+        s.walls = *walls; // tell which cells are in front
     }
+    tyn_view_inputs surfaces = {
+        .sources = &s, .field = beyond ? &no_field : view->field, .no_sky_on_surfaces = true};
+    tyn_add_surfaces(g, job, &surfaces);
+    view->surface = surfaces.surface;
+    view->distances = surfaces.distances;
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -152,7 +136,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         if (!marched.shadows.shadow_atlas.resource) {
             tyn_add_shadows(g, job, &marched);
         }
-        add_surfaces(g, job, &marched, &s.walls, trace.first == TYN_PHOTON_FIRST_BEAMS, &view);
+        add_surfaces(g, job, marched, &s.walls, trace.first == TYN_PHOTON_FIRST_BEAMS, &view);
         tyn_add_picture(g, job, &view);
     }
     return tyn_graph_status(g);

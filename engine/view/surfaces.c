@@ -115,9 +115,16 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     memcpy(params.tint, in->field->tint, sizeof params.tint);
     const tyn_sky *ordinates = &in->sources->sky;
     const bool shadowed = ordinates->maps.sky_maps.resource && !in->no_sky_on_surfaces;
-    params.sky = sky[0] + sky[1] + sky[2] > 0.0f && !in->no_sky_on_surfaces &&
-                 !(shadowed && job->frame->environment.has_map);
+    // Of a constant environment directions have the light only where the lattice has not.
+    const bool in_directions = shadowed && (job->frame->environment.has_map || !ordinates->split);
+    params.sky = tyn_is_lit(sky) && !in->no_sky_on_surfaces && !in_directions;
     params.sky_fan = ordinates->fan;
+    if (shadowed && in->sources->lattice.side > 0) {
+        const tyn_lattice_shape *shape = &in->sources->lattice.shape;
+        const tyn_extent cells = tyn_lattice_dims(shape->extent, shape->cells);
+        memcpy(params.sky_cells, (const uint32_t[]){cells.x, cells.y, cells.z},
+               sizeof params.sky_cells);
+    }
     const bool beyond = reach_beyond_media(job->frame);
     params.outside = beyond && !tyn_is_periodic(job->frame);
     params.hidden = params.outside && tyn_can_trace(job);
@@ -173,11 +180,15 @@ void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn
     }
     const tyn_field no_field = {0};
     const bool media = s.medium.density.resource != 0;
-    tyn_view_inputs surfaces = {.sources = &s, .field = &no_field, .no_sky_on_surfaces = media};
-    if (media && tyn_is_lit(job->frame->environment.sky)) {
+    const bool maps = s.sky.maps.sky_maps.resource != 0;
+    tyn_view_inputs surfaces = {
+        .sources = &s, .field = &no_field, .no_sky_on_surfaces = media && !maps};
+    if (surfaces.no_sky_on_surfaces && tyn_is_lit(job->frame->environment.sky)) {
         tyn_job_warn(job, "the environment does not light the surfaces");
     }
-    tyn_job_warn_suns(job, "surfaces");
+    if (!maps) {
+        tyn_job_warn_suns(job, "surfaces");
+    }
     if (media && !s.num_suns) {
         tyn_add_beams(g, job, &s);
     }

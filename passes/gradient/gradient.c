@@ -71,9 +71,23 @@ uint32_t tyn_gradient_points(const tyn_gradient_params *p)
     return points;
 }
 
+int32_t tyn_gradient_cells(const float extent[3], int32_t cells)
+{
+    // As tyn_gradient_voxel has it.
+    const float shortest = fminf(extent[0], fminf(extent[1], extent[2]));
+    const float flat = fmaxf(0.25f * longest_of(extent) / shortest, 1);
+    return (int32_t)fminf(ceilf(0.999f * flat * (float)cells), 256);
+}
+
+int32_t tyn_gradient_field(const tyn_gradient_params *p)
+{
+    const int32_t wanted = tyn_gradient_cells(p->extent, p->field);
+    return wanted < p->voxels ? wanted : p->voxels;
+}
+
 static tyn_extent field_of(const tyn_gradient_params *p)
 {
-    return tyn_lattice_dims(p->extent, p->field < p->voxels ? p->field : p->voxels);
+    return tyn_lattice_dims(p->extent, tyn_gradient_field(p));
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -107,6 +121,8 @@ static struct gradient_args args_of(const tyn_gradient_params *p)
         .linear = (uint32_t)p->extrapolation,
         .fading = p->weight == 0,
         .narrow = RBF_WIDTH,
+        .soft = p->soft * longest_of(e) / (float)(p->cells << (levels_of(p) - 1)),
+        .tint = {p->tint[0], p->tint[1], p->tint[2]},
         .x = n.x,
         .y = n.y,
         .z = n.z,
@@ -157,12 +173,27 @@ static void record_level(tyn_recorder *r, const tyn_gradient_params *p, struct g
     }
 }
 
+static uint32_t features_of(const tyn_recorder *r, const tyn_gradient_params *p)
+{
+    const bool shadows = tyn_rec_has(r, GRADIENT_PORT_SHADOW_ATLAS);
+    const bool multiple = tyn_rec_has(r, GRADIENT_PORT_SCATTERED);
+    uint32_t features = p->lamps ? GRADIENT_LAMPS : 0;
+    features |= shadows ? GRADIENT_SHADOWS : 0;
+    features |= shadows && p->soft > 0 ? GRADIENT_SOFT : 0;
+    const bool sky = tyn_rec_has(r, GRADIENT_PORT_LIGHT_SHADES);
+    features |= sky ? GRADIENT_SKY : 0;
+    features |= sky && tyn_rec_has(r, GRADIENT_PORT_SKY_MAPS) ? GRADIENT_MAPS : 0;
+    features |= multiple ? GRADIENT_MULTIPLE : 0;
+    features |= multiple && tyn_rec_has(r, GRADIENT_PORT_WALL_LINKS) ? GRADIENT_WALLS : 0;
+    features |= multiple && p->one_channel ? GRADIENT_ONE_CHANNEL : 0;
+    return features;
+}
+
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gradient_params *p = params;
     struct gradient_args args = args_of(p);
-    uint32_t features = p->lamps ? GRADIENT_LAMPS : 0;
-    features |= tyn_rec_has(r, GRADIENT_PORT_SHADOW_ATLAS) ? GRADIENT_SHADOWS : 0;
+    const uint32_t features = features_of(r, p);
     tyn_rec_fill(r, GRADIENT_PORT_COUNTERS, 0);
     const tyn_extent cells = {args.x + 2, args.y + 2, args.z + 2};
     if (p->interpolation == GRADIENT_VOXEL) {
@@ -174,7 +205,8 @@ static void record(tyn_recorder *r, const void *params)
         for (args.level = 0; args.level < args.levels; args.level++) {
             record_level(r, p, &args, features);
         }
-        const uint32_t spec[] = {0, (uint32_t)p->interpolation};
+        const uint32_t spec[] = {0, (uint32_t)p->interpolation,
+                                 tyn_rec_has(r, GRADIENT_PORT_BRICKS)};
         TYN_DISPATCH(r, .kernel = KERNEL_FIELD, .cells = cells, .args = &args, .spec = spec);
     }
     tyn_rec_work(r, "cells", (double)args.x * args.y * args.z);
@@ -183,17 +215,25 @@ static void record(tyn_recorder *r, const void *params)
 static const char *const interpolations[] = {"gradient", "rbf", "voxel"};
 static const char *const extrapolations[] = {"exponential", "linear"};
 static const char *const weights[] = {"fading", "printed"};
+static const char *const multiples[] = {"none", "lattice"};
 
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_gradient_params, cells), 8, 2, 32, "cells",
      "of the first grid of samples along the longest side", NULL},
     {"grid", TYN_PARAM_INT, offsetof(tyn_gradient_params, grid), 64, 2, GRADIENT_MAX_CELLS, "cells",
      "of the finest, at most: each grid is twice as fine as the one before", NULL},
-    {"field", TYN_PARAM_INT, offsetof(tyn_gradient_params, field), 128, 16, 256, "cells",
-     "of the field that is made of samples, at most as many as voxels (64 at least)", NULL},
+    {"field", TYN_PARAM_INT, offsetof(tyn_gradient_params, field), 64, 16, 256, "cells",
+     "of the field that is made of samples, along the longest side: more where the medium is flat, "
+     "at most as many as voxels (64 at least)",
+     NULL},
+    {"medium", TYN_PARAM_INT, offsetof(tyn_gradient_params, medium), 64, 16, 256, "texels",
+     "along the longest side, of the mean densities through which light is followed where the "
+     "medium "
+     "is finer (one medium); 256: as it is",
+     NULL},
     {"epsilon", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, epsilon), 1e-4, 0, 1, "",
      "samples are split whose error is a larger share of all light seen (Eq 6)", NULL},
-    {"lights", TYN_PARAM_INT, offsetof(tyn_gradient_params, lights), 20, 1, 64, "",
+    {"lights", TYN_PARAM_INT, offsetof(tyn_gradient_params, lights), 32, 1, 64, "",
      "distant lights that stand for the environment", NULL},
     {"interpolation", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, interpolation),
      GRADIENT_GRADIENT, 0, 2, "",
@@ -208,6 +248,15 @@ static const tyn_param param_table[] = {
      extrapolations},
     {"step", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, step), 0.5, 0.1, 4, "voxels",
      "between densities along rays to lights", NULL},
+    {"soft", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, soft), 0, 0, 8, "cells",
+     "of the finest grid, across which edges of the shadows of surfaces are soft; 0: they are "
+     "sharp",
+     NULL},
+    {"multiple", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, multiple), 0, 0, 1, "",
+     "light that has scattered more than once: none = left out, as published; lattice = samples "
+     "read "
+     "the solution of pop's lattice",
+     multiples},
 };
 
 static const tyn_counter counters[] = {

@@ -9,6 +9,14 @@
 // Bits of the specialisation constant "features".
 #define GRADIENT_SHADOWS (1u << 0) // surfaces stand before suns and lamps
 #define GRADIENT_LAMPS (1u << 1)   // some lights are points
+#define GRADIENT_MAPS (1u << 2)    // ... and before the environment: its directions have maps
+#define GRADIENT_MULTIPLE                                                                          \
+    (1u << 3) // samples read what has scattered more than once; all is delta scaled
+#define GRADIENT_WALLS (1u << 4) // ... between walls of the lattice
+#define GRADIENT_SOFT (1u << 5)  // shadows of suns and lamps have soft edges
+#define GRADIENT_SKY (1u << 7)   // some lights stand for many directions
+#define GRADIENT_ONE_CHANNEL                                                                       \
+    (1u << 6) // what samples read has one channel, to be multiplied with `tint`
 
 // Specialisation constant "interpolation".
 #define GRADIENT_GRADIENT 0u
@@ -34,9 +42,11 @@ struct gradient_args {
     tyn_uint linear;  // 1: L + (x - x_j) grad L, else L e^((x - x_j) grad L / L)
     tyn_uint fading;  // 1: weights vanish at the valid radius
     float narrow;     // width of radial functions, of the valid radius
+    float soft;       // across which edges of shadows are soft, m
+    tyn_vec3 tint;    // of the one channel of what has scattered more than once
     tyn_uint x, y, z; // cells of the field
 };
-TYN_ASSERT_SIZE(gradient_args, 80);
+TYN_ASSERT_SIZE(gradient_args, 96);
 
 // What is known of a level, for dispatches and the next one.
 struct gradient_level_head {

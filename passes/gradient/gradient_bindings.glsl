@@ -9,9 +9,17 @@ TYN_ARGS(gradient_args args);
 layout(binding = 5) uniform usamplerBuffer light_list_texels;
 #define SHADOWS_AT 6
 #include "shaders/light/shadow.glsl"
-TYN_UNIFORM(8, camera, camera_block camera);
+#define SKY_MAPS_AT 8
+#include "shaders/light/sky_maps.glsl"
+layout(binding = 10) uniform usamplerBuffer light_shades_texels;
+#include "shaders/lattice/lattice.glsl"
+layout(binding = 11) uniform sampler3D scattered_tex;
+#define WALLS_AT 12
+#include "shaders/walls/lattice_walls.glsl"
+TYN_UNIFORM(14, camera, camera_block camera);
 #include "shaders/common/camera.glsl"
-TYN_UPDATE(9, counters, counters_block counters);
+TYN_UPDATE(15, counters, counters_block counters);
 #include "shaders/light/light_list.glsl"
+#include "shaders/light/light_shades_args.h"
 #include "gradient_light.glsl"
 #endif

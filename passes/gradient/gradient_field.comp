@@ -15,14 +15,17 @@ TYN_ARGS(gradient_args args);
 #include "gradient_grid.glsl"
 
 layout(constant_id = 1) const uint gradient_interpolation = GRADIENT_GRADIENT;
+layout(constant_id = 2) const uint gradient_bricks = 0u; // 1: it is known where there is no medium
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(binding = 1) uniform usamplerBuffer states_words;
 layout(binding = 2) uniform samplerBuffer samples_texels;
 layout(binding = 3, rgba32f) uniform writeonly image3D inscatter_image;
 TYN_UPDATE(4, counters, counters_block counters);
+layout(binding = 5) uniform sampler3D bricks_tex;
 
 shared uint taken[2]; // which of the 64 are samples
+shared uint matter;   // 1: there is medium whose light these cells tell
 shared vec3 place[GRADIENT_GROUP], light[GRADIENT_GROUP], slope_x[GRADIENT_GROUP], slope_y[GRADIENT_GROUP], slope_z[GRADIENT_GROUP];
 
 struct sums {
@@ -55,6 +58,28 @@ void add(inout sums s, vec3 x, uint n, float radius)
     }
 }
 
+// Is there medium between two places? All threads of the group ask.
+bool any_medium(vec3 low, vec3 high, uint own)
+{
+    if (own == 0u) {
+        matter = gradient_bricks == 0u ? 1u : 0u;
+    }
+    barrier();
+    const ivec3 last = ivec3(medium.bricks) - 1;
+    const ivec3 from = clamp(ivec3(floor(low / medium.brick_size)), ivec3(0), last);
+    const ivec3 span = clamp(ivec3(floor(high / medium.brick_size)), ivec3(0), last) - from + 1;
+    const uint count = gradient_bricks == 0u ? 0u : uint(span.x * span.y * span.z);
+    for (uint n = own; n < count; n += GRADIENT_GROUP) {
+        const uint row = n / uint(span.x);
+        const ivec3 brick = from + ivec3(n % uint(span.x), row % uint(span.y), row / uint(span.y));
+        if (texelFetch(bricks_tex, brick, 0).g > 0.0) {
+            atomicOr(matter, 1u);
+        }
+    }
+    barrier();
+    return matter != 0u;
+}
+
 void main()
 {
     const ivec3 dims = ivec3(args.x, args.y, args.z);
@@ -65,7 +90,9 @@ void main()
     const vec3 low = lattice_to_m(box, vec3(4u * gl_WorkGroupID) - 0.5), high = low + 3.0 * box.dx;
     const uint own = gl_LocalInvocationIndex;
     sums s = sums(vec3(0.0), 0.0);
-    for (uint level = 0u; level < args.levels; level++) {
+    // Places are blended between cells.
+    const uint levels = any_medium(low - box.dx, high + box.dx, own) ? args.levels : 0u;
+    for (uint level = 0u; level < levels; level++) {
         const gradient_grid grid = gradient_grid_of(level);
         const ivec3 from = max(ivec3(ceil((low - grid.radius) / grid.spacing - 0.5)), ivec3(0));
         const ivec3 to = min(ivec3(floor((high + grid.radius) / grid.spacing - 0.5)), grid.size - 1);

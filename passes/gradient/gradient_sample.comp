@@ -11,10 +11,10 @@
 layout(constant_id = 2) const uint gradient_threads = 16u;
 
 layout(local_size_x = 64) in;
-TYN_READ(10, heads, gradient_head heads);
-TYN_READ(11, entries, uint entries[]);
-TYN_UPDATE(12, states, uint states[]);
-TYN_WRITE(13, samples, gradient_sample samples[]);
+TYN_READ(16, heads, gradient_head heads);
+TYN_READ(17, entries, uint entries[]);
+TYN_UPDATE(18, states, uint states[]);
+TYN_WRITE(19, samples, gradient_sample samples[]);
 
 shared vec3 traced[GRADIENT_GROUP];   // light; of the last thread, transmittance to the eye
 shared vec3 scatters[GRADIENT_GROUP]; // sigma_s there

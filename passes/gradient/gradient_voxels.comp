@@ -2,10 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "gradient_bindings.glsl"
-#include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(binding = 10, rgba32f) uniform writeonly image3D inscatter_image;
+layout(binding = 16, rgba32f) uniform writeonly image3D inscatter_image;
 
 void main()
 {

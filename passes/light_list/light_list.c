@@ -1,22 +1,35 @@
 // light_list.c -- tables of the list of lights.
 #include "light_list.h"
 #include "light_list.comp.h"
+#include "light_list_shades.comp.h"
 
 static const tyn_port ports[] = {LIGHT_LIST_PORTS(TYN_PORT_ROW)};
 
-static const tyn_kernel kernels[] = {TYN_KERNEL(light_list)};
+enum { KERNEL_LIST, KERNEL_SHADES, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_LIST] = TYN_KERNEL(light_list),
+    [KERNEL_SHADES] = TYN_KERNEL(light_list_shades),
+};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
     tyn_build_buffer(b, LIGHT_LIST_PORT_LIGHT_LIST, sizeof(struct light_list_block));
+    const bool shaded = tyn_build_has(b, LIGHT_LIST_PORT_DIRECTIONS);
+    tyn_build_buffer(b, LIGHT_LIST_PORT_LIGHT_SHADES,
+                     shaded ? sizeof(struct light_shades_block) : 16);
     return TYN_OK;
 }
 
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_light_list_params *p = params;
-    TYN_DISPATCH(r, .cells = {64, 1, 1}, .args = &p->listed);
+    TYN_DISPATCH(r, .kernel = KERNEL_LIST, .cells = {64, 1, 1}, .args = &p->listed);
+    if (tyn_rec_has(r, LIGHT_LIST_PORT_DIRECTIONS)) {
+        TYN_DISPATCH(r, .kernel = KERNEL_SHADES, .cells = {TYN_ORDINATES_MAX, 1, 1},
+                     .args = &p->listed);
+    }
 }
 
 const tyn_pass_desc tyn_pass_light_list = {

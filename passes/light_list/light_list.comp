@@ -8,9 +8,10 @@
 layout(local_size_x = 64) in;
 TYN_ARGS(light_list_args args);
 TYN_READ(0, constellation, constellation_block constellation);
-TYN_UNIFORM(1, lights, light_block lights[TYN_LIGHTS_MAX]);
-TYN_UNIFORM(2, environment, env_block environment);
-TYN_WRITE(3, light_list, light_list_block light_list);
+TYN_UNIFORM(1, suns, light_block suns[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(2, lights, light_block lights[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(3, environment, env_block environment);
+TYN_WRITE(4, light_list, light_list_block light_list);
 
 light_block light_of_constellation(uint i)
 {
@@ -25,20 +26,23 @@ light_block light_of_constellation(uint i)
     light.direction = -towards;
     light.radius = 0.0;
     light.shadow = TYN_LIGHT_NO_SHADOW;
-    light.mean_cosine = 1.0;
+    // Of a cone with the region's solid angle.
+    light.mean_cosine = args.wide != 0u ? 1.0 - star.solid_angle / (4.0 * 3.14159265359) : 1.0;
     light.pad = 0u;
     return light;
 }
 
 light_block light_of_scene(uint i)
 {
-    light_block light = lights[i];
+    light_block light;
     if (i < args.num_suns) {
+        light = suns[i];
         light.shadow = TYN_LIGHT_NO_SHADOW;
         [[unroll]] for (uint k = 0u; k < 4u; k++) {
             light.shadow = k == i && k < args.suns_with_shadow ? args.sun_shadow[k] : light.shadow;
         }
     } else {
+        light = lights[args.first_lamp + i - args.num_suns];
         light.shadow = args.shadows != 0u ? TYN_SHADOW_LAMP(i - args.num_suns) : TYN_LIGHT_NO_SHADOW;
         light.mean_cosine = 1.0; // a point
     }
@@ -62,7 +66,7 @@ void main()
             sum += environment.radiance * constellation.lights[i].power;
         }
         for (uint i = 0u; i < args.num_suns; i++) {
-            sum += lights[i].color;
+            sum += suns[i].color;
         }
         light_list.count = count;
         light_list.mean = sum * (1.0 / (4.0 * 3.14159265359));

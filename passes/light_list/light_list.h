@@ -4,6 +4,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "light_list_args.h"
+#include "shaders/light/light_shades_args.h"
 
 typedef struct tyn_light_list_params {
     struct light_list_args listed; // set by the method
@@ -12,9 +13,13 @@ typedef struct tyn_light_list_params {
 // clang-format off
 #define LIGHT_LIST_PORTS(X) \
     X(LIGHT_LIST, CONSTELLATION, constellation, OPTIONAL, BUFFER, "of median_cut"), \
-    X(LIGHT_LIST, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
+    X(LIGHT_LIST, SUNS, suns, IN, BUFFER, "struct light_block[]: suns"), \
+    X(LIGHT_LIST, LIGHTS, lights, IN, BUFFER, "struct light_block[]: lamps, from `first_lamp` on"), \
     X(LIGHT_LIST, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
-    X(LIGHT_LIST, LIGHT_LIST, light_list, OUT, BUFFER, "struct light_list_block")
+    X(LIGHT_LIST, DIRECTIONS, directions, OPTIONAL, BUFFER, \
+        "struct ordinates_block: directions of the sky; the fixed ones are the suns without shadow maps"), \
+    X(LIGHT_LIST, LIGHT_LIST, light_list, OUT, BUFFER, "struct light_list_block"), \
+    X(LIGHT_LIST, LIGHT_SHADES, light_shades, OUT, BUFFER, "struct light_shades_block: with directions")
 // clang-format on
 enum { LIGHT_LIST_PORTS(TYN_PORT_ENUM), LIGHT_LIST_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_light_list;

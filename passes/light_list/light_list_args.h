@@ -6,13 +6,16 @@
 
 struct light_list_args {
     tyn_uint constellation; // 1: there is one
-    tyn_uint num_suns;      // of the scene
-    tyn_uint num_lamps;     // that follow them
-    tyn_uint shadows;       // 1: suns and lamps have shadow maps
+    tyn_uint num_suns;      // the first of "suns"
+    tyn_uint num_lamps;
+    tyn_uint shadows; // 1: suns and lamps have shadow maps
     // Which of the suns that have a shadow map each of the first is, or TYN_LIGHT_NO_SHADOW.
     tyn_uint sun_shadow[4];
     tyn_uint suns_with_shadow; // so many of `sun_shadow` count
+    tyn_uint first_lamp;       // in "lights"
+    tyn_uint
+        wide; // 1: lights of the constellation are as wide as their regions (mean cosines), else points
 };
-TYN_ASSERT_SIZE(light_list_args, 36);
+TYN_ASSERT_SIZE(light_list_args, 44);
 
 #endif

@@ -113,6 +113,7 @@ static void record(tyn_recorder *r, const void *data)
         .sight_lo = {p->sight_lo[0], p->sight_lo[1], p->sight_lo[2]},
         .sight_edge = p->sight_edge,
         .sky_fan = p->sky_fan,
+        .sky_cells = {p->sky_cells[0], p->sky_cells[1], p->sky_cells[2]},
     };
     uint32_t features = 0;
     features |= tyn_rec_has(r, PORT(BEAMS)) || tyn_rec_has(r, PORT(RADIALS)) ? SHADE_MEDIUM : 0;
@@ -125,9 +126,7 @@ static void record(tyn_recorder *r, const void *data)
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
     features |= sky_maps ? SHADE_SKY_MAPS : 0;
-    features |= sky_maps && tyn_rec_has(r, PORT(COLUMNS)) && tyn_rec_has(r, PORT(MOMENTS))
-                    ? SHADE_COLUMNS
-                    : 0;
+    features |= sky_maps && tyn_rec_has(r, PORT(COLUMNS)) && p->sky_cells[0] ? SHADE_COLUMNS : 0;
     features |= p->num_lamps ? SHADE_LAMPS : 0;
     features |= p->textured ? SHADE_TEXTURED : 0;
     const uint32_t rooms = tyn_rec_has(r, PORT(ROOMS));

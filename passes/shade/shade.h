@@ -29,6 +29,8 @@ typedef struct tyn_shade_params {
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
     uint32_t sky_fan;  // directions of an ordinate
+    uint32_t sky_cells
+        [3]; // that have columns along ordinates (tyn_lattice_dims); 0: nothing dims their light
     uint32_t
         sky; // 1: without maps of ordinates the mean of the environment lights what is outside the lattice
 } tyn_shade_params;

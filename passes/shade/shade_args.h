@@ -48,8 +48,9 @@ struct shade_args {
     tyn_vec3 tint;
     tyn_vec3 sight_lo; // corner of the places of shade_sight.comp, and their distance (M, m)
     float sight_edge;
-    tyn_uint sky_fan; // directions of an ordinate
+    tyn_uint sky_fan;    // directions of an ordinate
+    tyn_uvec3 sky_cells; // that have columns along them
 };
-TYN_ASSERT_SIZE(shade_args, 40);
+TYN_ASSERT_SIZE(shade_args, 52);
 
 #endif

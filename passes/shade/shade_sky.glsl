@@ -22,7 +22,7 @@ vec4[SHADE_MANY] shade_parts(ivec2 block[SHADE_MANY])
 // What of ordinate n passes the medium on its way to q, which is in the medium's box; what was scattered forward counts as passed.
 vec3 shade_sky_left(uint n, vec3 q)
 {
-    lattice_box box = shade_lattice();
+    lattice_box box = lattice_box_of(medium.extent, ivec3(args.sky_cells));
     vec3 x = clamp(lattice_from_m(box, q) - 0.5, vec3(0.0), vec3(box.dims - 1));
     ivec3 first = min(ivec3(x), max(box.dims - 2, ivec3(0)));
     vec3 f = x - vec3(first), tau = vec3(0.0);

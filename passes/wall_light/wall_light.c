@@ -100,7 +100,8 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_SKY_SEEN)) {
-        TYN_DISPATCH(r, .kernel = SKY, .cells = cells, .args = &args, .spec = &p->mode);
+        const uint32_t of_sky[] = {p->mode, p->sky_whole};
+        TYN_DISPATCH(r, .kernel = SKY, .cells = cells, .args = &args, .spec = of_sky);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);

@@ -5,10 +5,11 @@
 
 // As radiance that they send out. Suns or the sky: not both.
 typedef struct tyn_wall_light_params {
-    float extent[3];   // medium_block.extent, m
-    uint32_t dims[3];  // cells of the lattice
-    uint32_t mode;     // TYN_MEDIUM_*
-    uint32_t num_suns; // 0..4: those whose light walls reflect here
+    float extent[3];    // medium_block.extent, m
+    uint32_t dims[3];   // cells of the lattice
+    uint32_t mode;      // TYN_MEDIUM_*
+    uint32_t num_suns;  // 0..4: those whose light walls reflect here
+    uint32_t sky_whole; // 1: ordinates carry the sky's mean, too
 } tyn_wall_light_params;
 
 // clang-format off

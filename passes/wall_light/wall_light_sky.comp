@@ -16,6 +16,7 @@
 #include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = 1) const uint whole = 0u; // 1: the sky's mean was not split off
 TYN_ARGS(wall_light_args args);
 #define SKY_SEEN_AT 3
 #include "shaders/light/sky_seen.glsl"
@@ -54,7 +55,8 @@ void main()
         }
         if (share * across > 0.0) {
             beam_tau tau = columns_tau(n, uvec3(c), args.dims);
-            sum += share * across * sky_whole_irradiance(o) * exp(-(tau.a + tau.p));
+            vec3 light = whole == 1u ? o.irradiance : sky_whole_irradiance(o);
+            sum += share * across * light * exp(-(tau.a + tau.p));
         }
     }
     float area = wall_cells[i].area;

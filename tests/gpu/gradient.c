@@ -1,11 +1,12 @@
 // gradient.c -- samples with gradients against closed forms in a uniform medium, what is split, and the field between samples
-// against all pairs of cells and samples.
+// against all pairs of cells and samples; lights that stand for many directions, light that has scattered before, and empty bricks.
 #include "gpu_test.h"
 #include "numbers.h"
 #include "passes/gradient/gradient.h"
 #include "shaders/common/counters.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/light/light_list_args.h"
+#include "shaders/light/light_shades_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,13 @@ typedef struct stage {
     float extent[3];
     double sigma_s, sigma_a, g;
     struct light_list_block list;
+    float turn;                              // of the camera about y, radians
+    const struct light_shades_block *shades; // NULL: none
+    const float *scattered; // of 3 x 3 x 3 cells, with one more at each face; or NULL
+    const float *bricks;    // BRICKS^3 of least and largest density, or NULL
 } stage;
+
+enum { BRICKS = 4 };
 
 // A sun and a lamp beside a uniform box, seen along -z.
 static stage make_stage(float x, float y, float z)
@@ -82,16 +89,29 @@ static void run(gpu_test *t, const stage *s)
         medium.sigma_s[c] = (float)s->sigma_s;
         medium.sigma_a[c] = (float)s->sigma_a;
         medium.phase[c].g = (float)s->g;
+        medium.bricks[c] = BRICKS;
+        medium.brick_size[c] = s->extent[c] / BRICKS;
     }
     static const float one = 1;
     const struct camera_block camera = {
-        .orthographic = 1, .forward = {0, 0, -1}, .origin = {0, 0, 5}};
+        .orthographic = 1, .forward = {-sinf(s->turn), 0, -cosf(s->turn)}, .origin = {0, 0, 5}};
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
     refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &medium, sizeof medium);
     refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 1, &one);
     refs[PORT(LIGHT_LIST)] = gpu_buffer(t, "list", &s->list, sizeof s->list);
     refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &camera, sizeof camera);
+    if (s->shades) {
+        refs[PORT(LIGHT_SHADES)] = gpu_buffer(t, "shades", s->shades, sizeof *s->shades);
+    }
+    if (s->scattered) {
+        refs[PORT(SCATTERED)] =
+            gpu_image(t, "scattered", TYN_IMAGE_3D, (tyn_extent){5, 5, 5}, 4, s->scattered);
+    }
+    if (s->bricks) {
+        refs[PORT(BRICKS)] = gpu_image(t, "bricks", TYN_IMAGE_3D,
+                                       (tyn_extent){BRICKS, BRICKS, BRICKS}, 2, s->bricks);
+    }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gradient, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "inscatter", refs[PORT(INSCATTER)], true);
     tyn_graph_output(t->graph, "samples", refs[PORT(SAMPLES)], true);
@@ -257,6 +277,49 @@ static void splitting(void **state)
     }
 }
 
+// What could be saved by keeping samples from frame to frame: at most the points that are followed for samples which are then split, as all
+// others are followed anew where a light moves. And how many samples stay where they are if a little moves.
+static void kept(void **state)
+{
+    uint32_t *before = NULL;
+    static const char *const moves[] = {"nothing", "camera by 3 degrees", "lamp by 0.02"};
+    for (int move = 0; move < 3; move++) {
+        stage s = make_stage(1, 0.8f, 0.6f);
+        s.params.epsilon = 2e-5f;
+        s.turn = move == 1 ? 0.05f : 0;
+        s.list.lights[1].position[1] += move == 2 ? 0.02f : 0;
+        run(*state, &s);
+        level levels[MAX_LEVELS];
+        const int n = levels_of(&s, levels);
+        const size_t points = tyn_gradient_points(&s.params);
+        const uint32_t *states = gpu_map(*state, "states");
+        size_t samples = 0, same = 0, traces = 0, split = 0;
+        if (!before) {
+            before = malloc(points * sizeof *before);
+            memcpy(before, states, points * sizeof *before);
+        }
+        for (int l = 0; l < n; l++) {
+            const size_t of_each = l + 1 < n ? 14 : 7;
+            for (size_t i = levels[l].first; i < levels[l].first + levels[l].count; i++) {
+                const bool is = states[i] & GRADIENT_IS_SAMPLE,
+                           was = before[i] & GRADIENT_IS_SAMPLE;
+                traces += states[i] ? of_each : 0;
+                split += states[i] && !is ? of_each : 0;
+                samples += is;
+                same += is && was;
+            }
+        }
+        const double saved = (double)split / (double)traces;
+        print_message(
+            "%s moved: %zu samples, %.1f %% stay; %.1f %% of all traces are of samples that "
+            "are split\n",
+            moves[move], samples, 100.0 * (double)same / (double)samples, 100 * saved);
+        assert_true(saved < 0.15 && saved > 0.05);
+        assert_true((double)same > 0.85 * (double)samples && (move == 0) == (same == samples));
+    }
+    free(before);
+}
+
 // Eq 4 over all pairs.
 static void field(void **state)
 {
@@ -366,10 +429,124 @@ static void voxels(void **state)
     assert_true(worst < 1e-4);
 }
 
+// A sun that stands for three directions of unequal shares; the second light, a lamp, is dark.
+static void directions(void **state)
+{
+    stage s = make_stage(1, 1, 1);
+    s.params.epsilon = 1;
+    s.params.lamps = 0;
+    s.list.count = 1;
+    static struct light_shades_block shades;
+    static const double along[3][3] = {{0.6, -0.8, 0}, {0, -0.6, -0.8}, {0, 0, 1}};
+    static const double share[3] = {0.5, 0.3, 0.2}, spread[3] = {1, 0.9, 0.7};
+    shades.lights[0] = (struct light_shades_range){.first = 2, .count = 3};
+    double phase = 0;
+    for (int k = 0; k < 3; k++) {
+        struct light_shade *shade = &shades.shades[2 + k];
+        *shade = (struct light_shade){.share = (float)share[k], .mean_cosine = (float)spread[k]};
+        for (int a = 0; a < 3; a++) {
+            shade->along[a] = (float)along[k][a];
+        }
+        phase += share[k] * hg(s.g * spread[k], along[k][2]); // seen along +z
+    }
+    s.shades = &shades;
+    run(*state, &s);
+    level levels[MAX_LEVELS];
+    levels_of(&s, levels);
+    const struct gradient_sample *found = gpu_map(*state, "samples");
+    double worst = 0;
+    for (size_t i = 0; i < levels[0].count; i++) {
+        double x[3];
+        place(&levels[0], i, x);
+        for (int c = 0; c < 3; c++) {
+            const double right = (double)s.list.lights[0].color[c] *
+                                 exp(-(s.sigma_s + s.sigma_a) * (1 - x[1])) * phase;
+            worst = maximum(worst, fabs((double)found[i].light[c] / right - 1));
+        }
+    }
+    print_message("three directions: %.1e off\n", worst);
+    assert_true(worst < 1e-4);
+}
+
+// With light that has scattered before all is delta scaled, and first scattering has the whole phase function over 1 - f.
+static void scattered_before(void **state)
+{
+    float scattered[125][4];
+    for (int q = 0; q < 125; q++) { // linear along x, as cells of thirds of the box are blended
+        for (int c = 0; c < 3; c++) {
+            scattered[q][c] = (float)(c + 1) * (1 + 0.3f * (float)(q % 5 - 1));
+        }
+        scattered[q][3] = 0;
+    }
+    for (uint32_t one = 0; one < 2; one++) {
+        stage s = make_stage(1, 1, 1);
+        s.params.epsilon = 1;
+        s.params.lamps = 0;
+        s.list.count = 1;
+        s.scattered = &scattered[0][0];
+        s.params.one_channel = one;
+        s.params.tint[0] = 1;
+        s.params.tint[1] = 0.5f;
+        s.params.tint[2] = 0.25f;
+        run(*state, &s);
+        level levels[MAX_LEVELS];
+        levels_of(&s, levels);
+        const struct gradient_sample *found = gpu_map(*state, "samples");
+        const double f = s.g * s.g, sigma = s.sigma_a + (1 - f) * s.sigma_s;
+        double worst = 0;
+        for (size_t i = 0; i < levels[0].count; i++) {
+            double x[3];
+            place(&levels[0], i, x);
+            for (int c = 0; c < 3; c++) {
+                const double once = (double)s.list.lights[0].color[c] * exp(-sigma * (1 - x[1])) *
+                                    hg(s.g, 0) / (1 - f);
+                const double before =
+                    (one ? (double)s.params.tint[c] : c + 1) * (1 + 0.3 * (3 * x[0] - 0.5));
+                worst = maximum(worst, fabs((double)found[i].light[c] / (once + before) - 1));
+            }
+        }
+        print_message("%s: %.1e off\n", one ? "one channel" : "three channels", worst);
+        assert_true(worst < 1e-4);
+    }
+}
+
+// Where bricks are empty there is no field; where cells may be blended with some that are not, it is as it would be.
+static void empty_bricks(void **state)
+{
+    stage s = make_stage(1, 1, 1);
+    s.params.field = 32;
+    float bricks[BRICKS * BRICKS * BRICKS][2] = {{0}};
+    bricks[(1 * BRICKS + 1) * BRICKS + 2][1] = 1; // 0.5 to 0.75, 0.25 to 0.5, 0.25 to 0.5
+    run(*state, &s);
+    const size_t size = 34ull * 34 * 34 * 16;
+    float(*all)[4] = malloc(size);
+    memcpy(all, gpu_map(*state, "inscatter"), size);
+    s.bricks = &bricks[0][0];
+    run(*state, &s);
+    const float(*found)[4] = (const float(*)[4])gpu_map(*state, "inscatter");
+    uint32_t kept = 0, gone = 0;
+    for (int q = 0; q < 34 * 34 * 34; q++) {
+        const int at[3] = {q % 34 - 1, q / 34 % 34 - 1, q / 34 / 34 - 1};
+        const bool near =
+            at[0] >= 15 && at[0] <= 24 && at[1] >= 7 && at[1] <= 16 && at[2] >= 7 && at[2] <= 16;
+        const bool same = memcmp(all[q], found[q], sizeof all[q]) == 0;
+        const bool dark = found[q][0] == 0 && found[q][1] == 0 && found[q][2] == 0;
+        assert_true(near ? same : same || dark);
+        kept += near;
+        gone += dark;
+    }
+    print_message("%u cells kept, %u of 39304 dark\n", kept, gone);
+    assert_true(kept == 1000 && gone > 34000);
+    free(all);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(samples), cmocka_unit_test(splitting),
-                                       cmocka_unit_test(field), cmocka_unit_test(same_bytes),
-                                       cmocka_unit_test(voxels)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(directions),   cmocka_unit_test(scattered_before),
+        cmocka_unit_test(empty_bricks), cmocka_unit_test(kept),
+        cmocka_unit_test(samples),      cmocka_unit_test(splitting),
+        cmocka_unit_test(field),        cmocka_unit_test(same_bytes),
+        cmocka_unit_test(voxels)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
