@@ -2,6 +2,7 @@
 // surfaces, soft edges of shadows, light that has scattered more than once; and volumes finer than its samples.
 #include "bound.h"
 #include "gpu_test.h"
+#include "numbers.h"
 #include "offline_frame.h"
 #include "path_run.h"
 #include "picture.h"
@@ -256,7 +257,7 @@ static void extremes(void **state)
         const float *rgba = tyn_offline_output(off, TYN_OUTPUT_RADIANCE);
         double least = 0, sum = 0;
         for (int i = 0; i < 16 * 16 * 4; i++) {
-            least = fmin(least, (double)rgba[i]);
+            least = minimum(least, (double)rgba[i]);
             sum += (double)rgba[i];
         }
         assert_true(least == 0 && sum > 0);
