@@ -591,7 +591,8 @@ static const option output_table[] = {
      "changes by up to 1 %"},
     {0, "crop", OPT_TEXT, AT(crop), "X,Y,WxH",
      "only these pixels of the picture, from column X and row Y on; of an .exr they are the data "
-     "window in the whole picture's display window"},
+     "window in the whole picture's display window. Parts of one picture by 'path' want a --seed "
+     "each"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",

@@ -2,6 +2,7 @@
 #include "crop.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 bool crop_take(app *a, const char *text, tyn_view *view)
 {
@@ -10,7 +11,8 @@ bool crop_take(app *a, const char *text, tyn_view *view)
     if (!text) {
         return true;
     }
-    if (sscanf(text, "%9u,%9u,%9ux%9u%c", &n[0], &n[1], &n[2], &n[3], &more) != 4) {
+    if (strchr(text, '-') ||
+        sscanf(text, "%9u,%9u,%9ux%9u%c", &n[0], &n[1], &n[2], &n[3], &more) != 4) {
         app_error(a,
                   "--crop: '%s' is not X,Y,WxH: column and row of the upper left pixel, and a size",
                   text);

@@ -77,6 +77,16 @@ static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
     out->typical_density = ctx->typical_density;
 }
 
+// 1 - albedo is a difference: a half float next to 1 would lose what is absorbed.
+static bool has_albedo(const tyn_scene *scene)
+{
+    bool has = false;
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        has = has || scene->media[i].albedo_grid > 0;
+    }
+    return has;
+}
+
 static void choose_storage(tyn_context *ctx)
 {
     tyn_medium_params medium = {0};
@@ -89,6 +99,7 @@ static void choose_storage(tyn_context *ctx)
         ctx->colors.half = medium.storage == TYN_MEDIUM_STORAGE_HALF;
         ctx->atlas.half &= ctx->colors.half;
     }
+    ctx->colors.half = ctx->colors.half && !has_albedo(ctx->scene);
 }
 
 tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)

@@ -3,6 +3,8 @@
 #include "base/hash.h"
 #include "scene/phase.h"
 #include "scene/phase_table.h"
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,10 +39,30 @@ static void warn(tyn_context *ctx, bool knows)
     tyn_context_warn(
         ctx,
         knows
-            ? "phase functions of several media: each counts as the Henyey-Greenstein lobe "
+            ? "phase functions of several media, or beside grids of colours: each counts as the "
+              "Henyey-Greenstein lobe "
               "of its mean cosine; 'path' knows them"
             : "phase functions that are not one Henyey-Greenstein lobe count as that of their mean "
               "cosine; 'path', 'pop', 'lpv' and 'single' know them");
+}
+
+// Forward lobes are sums of Legendre polynomials, of which there are as many as g = 0.995 needs (passes/scatter_lut).
+static void warn_of_narrow_lobes(tyn_context *ctx)
+{
+    const float most = 0.998f;
+    float narrowest = 0;
+    for (int c = 0; c < 3; c++) {
+        const tyn_phase *p = &ctx->frame.medium.phase[c];
+        narrowest = p->table ? fmaxf(narrowest, fmaxf(p->forward, p->backward)) : narrowest;
+    }
+    if (narrowest > most) {
+        char line[256];
+        snprintf(line, sizeof line,
+                 "accuracy: a phase function is as high in its peak as a lobe of g %.5g: beyond %g "
+                 "peaks are smeared over some degrees, with rings about them; 'path' knows them",
+                 (double)narrowest, (double)most);
+        tyn_context_warn(ctx, line);
+    }
 }
 
 tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene)
@@ -58,6 +80,9 @@ tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene)
             take_one_lobe(frame->shapes[i].phase);
         }
         return TYN_OK;
+    }
+    if (known == TYN_PHASES_OF_ONE_MEDIUM) {
+        warn_of_narrow_lobes(ctx);
     }
     frame->phase_tables = scene->phase_tables;
     const uint64_t hash = tyn_phase_tables_hash(scene);

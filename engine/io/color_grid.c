@@ -53,7 +53,9 @@ tyn_result tyn_color_grid_load(tyn_color_grid *colors, const char *path, const c
 
 // ---- temperatures -----------------------------------------------------------------------------
 
-enum { STEPS = 4096 }; // of a table over the temperatures of a grid
+// A table over the temperatures of a grid, even in their logarithms. What is colder is dark.
+enum { MOST_STEPS = 65536, COLDEST = 300 };
+static const double fine_step = 3e-4; // octaves; at 600 K straight lines are then 1e-5 off
 
 static void radiance_of(double kelvins, const tyn_temperature *how, float rgb[3])
 {
@@ -98,10 +100,10 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
     }
     const size_t count = (size_t)size[0] * size[1] * size[2];
     const double scale = how->scale == 0 ? 1 : how->scale;
-    double least = INFINITY, most = 0;
+    double least = INFINITY, most = COLDEST;
     for (size_t i = 0; i < count; i++) {
-        const double kelvins = fmax(values[i] * scale + how->offset, 0);
-        if (!isfinite(kelvins)) {
+        const double given = values[i] * scale + how->offset, kelvins = fmax(given, COLDEST);
+        if (!isfinite(given)) {
             tyn_log_print(log, TYN_LOG_ERROR, "temperature %g of value %zu: must be finite",
                           (double)values[i], i);
             return TYN_ERR_PARAMS;
@@ -111,23 +113,27 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
     }
     *colors = (tyn_color_grid){.size = {size[0], size[1], size[2]}, .channels = 3};
     colors->data = malloc(count * 3 * sizeof *colors->data);
-    float(*table)[3] = malloc((STEPS + 1) * sizeof *table);
+    const double octaves = log2(most / least);
+    const int steps = (int)fmin(ceil(octaves / fine_step) + 1, MOST_STEPS);
+    const double step = fmax(octaves / steps, 1e-12);
+    float(*table)[3] = malloc(((size_t)steps + 1) * sizeof *table);
     if (!colors->data || !table) {
         tyn_log_print(log, TYN_LOG_ERROR, "no memory for the radiance of %zu voxels", count);
         free(table);
         tyn_color_grid_finish(colors);
         return TYN_ERR_MEMORY;
     }
-    const double step = fmax((most - least) / STEPS, 1e-9);
-    for (int i = 0; i <= STEPS; i++) {
-        radiance_of(least + i * step, how, table[i]);
+    for (int i = 0; i <= steps; i++) {
+        radiance_of(least * exp2(i * step), how, table[i]);
     }
     for (size_t i = 0; i < count; i++) {
-        const double at = (fmax(values[i] * scale + how->offset, 0) - least) / step;
-        const int below = at < STEPS ? (int)at : STEPS - 1;
+        const double kelvins = values[i] * scale + how->offset;
+        const double at = kelvins > COLDEST ? fmax(log2(kelvins / least) / step, 0) : 0;
+        const int below = at < steps ? (int)at : steps - 1;
         const float t = (float)fmin(at - below, 1);
         for (int c = 0; c < 3; c++) {
-            const float v = table[below][c] + t * (table[below + 1][c] - table[below][c]);
+            float v = table[below][c] + t * (table[below + 1][c] - table[below][c]);
+            v = kelvins > COLDEST ? v : 0;
             colors->data[3 * i + (size_t)c] = v;
             colors->max = v > colors->max ? v : colors->max;
         }

@@ -169,7 +169,11 @@ static tyn_result align(grids *g, gltf_grids *place, const json_doc *doc)
         }
     }
     const char *why = NULL;
-    const tyn_result r = count ? tyn_grids_align(placed, count, TYN_MAX_VOXELS / 3, &why) : TYN_OK;
+    uint64_t most = TYN_MAX_VOXELS;
+    for (uint32_t i = 0; i < count; i++) {
+        most = placed[i].channels == 3 ? TYN_MAX_VOXELS / 3 : most;
+    }
+    const tyn_result r = count > 1 ? tyn_grids_align(placed, count, most, &why) : TYN_OK;
     for (uint32_t i = 0; i < count; i++) {
         tyn_volume *v = &g->jobs[of[i]].volume;
         const bool moved = v->data != placed[i].data;

@@ -579,6 +579,15 @@ static void find_range(tyn_volume_grid *g, const tyn_grid_job *job)
     }
 }
 
+static bool can_unpack(const entry *e)
+{
+#ifdef TYN_HAVE_BLOSC
+    return e->codec <= CODEC_BLOSC;
+#else
+    return e->codec <= CODEC_ZIP;
+#endif
+}
+
 // Of grids that can be read all; of others what the table of contents says of them.
 static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
 {
@@ -604,7 +613,15 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
     g->index_to_world[15] = 1;
     g->affine = true;
     tyn_result r = TYN_OK;
-    if (!level_set && g->active_voxels && (is_readable(e) || is_vector(e))) {
+    double values = is_vector(e) ? 3 : 1;
+    bool fits = true; // so many are never read for their range alone
+    for (int a = 0; a < 3; a++) {
+        const double side = (double)g->hi[a] - g->lo[a] + 1;
+        fits = fits && side <= 65536;
+        values *= side;
+    }
+    fits = fits && values <= (double)TYN_MAX_VOXELS && can_unpack(e);
+    if (fits && !level_set && g->active_voxels && (is_readable(e) || is_vector(e))) {
         uint8_t *memory = NULL;
         tyn_grid_job job = {.log = in->log};
         r = unpack(e, in, &memory);

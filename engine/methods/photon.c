@@ -39,6 +39,7 @@ static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_vi
         tyn_add_vpls(g, job, s);
     }
     tyn_add_radials(g, job, s);
+    s->lamps.vpls = false; // their light is in the cells
     tyn_add_shadows(g, job, s);
     view->sources = s;
     view->num_marched_lamps = s->lamps.num_lamps;
@@ -61,7 +62,13 @@ static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, const 
     tyn_job_warn_suns(job, "surfaces");
     const tyn_field no_field = {0};
     const bool beyond = tyn_vpls_bounce(job);
-    if (!beyond) {
+    if (beyond && tyn_is_lit(job->frame->environment.sky)) {
+        tyn_job_warn(job,
+                     "the environment does not light surfaces that reach far beyond the media");
+    }
+    if (beyond) {
+        s.lamps.vpls = s.surface_light.vpls.vpls.resource != 0;
+    } else {
         s.walls = *walls; // tell which cells are in front
     }
     tyn_view_inputs surfaces = {

@@ -134,6 +134,12 @@ static tyn_result check_medium(const tyn_scene *scene, uint32_t i, const tyn_log
         return TYN_ERR_PARAMS;
     }
     for (int c = 0; c < 3; c++) {
+        const tyn_phase *p = &m->phase[c];
+        if (!(p->delta >= 0 && p->delta < 1 && p->forward >= 0 && p->forward < 1 &&
+              p->backward >= 0 && p->backward < 1)) {
+            FAULT("media[%u].phase[%d]: delta %g, forward %g and backward %g must be in [0, 1)", i,
+                  c, (double)p->delta, (double)p->forward, (double)p->backward);
+        }
         if (m->phase[c].table > scene->num_phase_tables) {
             FAULT("media[%u].phase[%d].table = %u: there are %u (0 = a Henyey-Greenstein lobe)", i,
                   c, m->phase[c].table, scene->num_phase_tables);

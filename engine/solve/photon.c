@@ -30,7 +30,8 @@ static float largest(const float v[3])
 static float power_of_lights(const tyn_frame_scene *frame, const tyn_path_params *p)
 {
     const float pi = 3.14159265f, all[3] = {1, 1, 1};
-    float power = pi * (largest(frame->environment.mean) * area_across(p, all) + frame->emitters);
+    float power = pi * (largest(frame->environment.mean) * area_across(p, all) +
+                        2 * frame->emitters); // of both sides
     for (uint32_t i = 0; i < p->num_lights; i++) {
         const struct light_block *l = &frame->lights.scene[i];
         power += largest(l->color) * (l->kind == TYN_LIGHT_KIND_DIRECTIONAL

@@ -31,7 +31,9 @@ static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs
     memcpy(params.tint, in->sources->lattice.shape.tint, sizeof params.tint);
     params.num_suns = in->sources->num_suns;
     params.num_ordinates = in->sources->sky.count;
-    params.local_lights = in->sources->lamps.radials.radials.resource != 0;
+    if (in->sources->lamps.radials.radials.resource) {
+        params.local_lights = in->sources->lamps.vpls ? TYN_PROBE_LOCAL_ALL : TYN_PROBE_LOCAL_LAMPS;
+    }
     params.scattered_only = scattered_only;
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);

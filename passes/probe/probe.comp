@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "probe_args.h"
+#include "probe_local.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/common/counters.h"
 #define MEDIUM_BLOCK 0
@@ -256,7 +257,9 @@ void main()
             field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, flux);
         }
     }
-    uint lights = args.local_lights != 0 ? radial_count : 0u;
+    uint lights = args.local_lights == TYN_PROBE_LOCAL_ALL     ? radial_count
+                  : args.local_lights == TYN_PROBE_LOCAL_LAMPS ? radial_num_lamps
+                                                           : 0u;
     for (uint n = 0; n < lights; n++) {
         vec3 away = p - radials[n].light.position;
         float r = length(away), radius = radials[n].light.radius;

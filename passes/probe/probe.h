@@ -2,6 +2,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
+#include "passes/probe/probe_local.h"
 
 typedef struct tyn_probe_params {
     uint32_t mode;          // TYN_MEDIUM_*
@@ -9,7 +10,7 @@ typedef struct tyn_probe_params {
     float tint[3];          // of the one channel (tyn_lattice_shape.tint)
     uint32_t num_suns;      // 0..4
     uint32_t num_ordinates; // at most (tyn_columns_params.count); 0: there are none
-    uint32_t local_lights;  // 1: there are lamps or VPLs
+    uint32_t local_lights;  // TYN_PROBE_LOCAL_*: which of the grids of "radials" shine
     // 1: without light that has not scattered: that of suns and ordinates, and of the mean of the sky
     // where there are ordinates, along them.
     uint32_t scattered_only;

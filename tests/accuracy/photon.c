@@ -395,6 +395,32 @@ static void among_surfaces(void **state)
     assert_true(all);
 }
 
+// What surfaces send is counted once: by the cells, not by virtual lights as well, though these light the surfaces.
+static void probes_among_surfaces(void **state)
+{
+    static const float at[3][3] = {{0.1f, 0.3f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.3f, 0.4f, 0.3f}};
+    gpu_test *t = *state;
+    tyn_scene scene;
+    sample_scene_load(&scene, "cornell-smoke", t);
+    path_run path;
+    path_run_open(&path, t->dev);
+    const tyn_probe_result *right = path_run_probe(&path, &scene, at, 3, false, path_effort(1500));
+    double sum = 0, off = 0;
+    tyn_offline *photons =
+        scene_open(t->dev, "photon", "photon_trace.generations=10 photon_trace.photons=65536");
+    const tyn_probe_result *found = scene_probes(t->dev, photons, &scene, at, 3);
+    for (int i = 0; i < 3; i++) {
+        sum += (double)right[i].fluence[1];
+        off += fabs((double)found[i].fluence[1] - (double)right[i].fluence[1]);
+    }
+    printf("fluence among surfaces: %.1f %% off\n", 100 * off / sum);
+    tyn_offline_destroy(&photons);
+    path_run_close(&path);
+    tyn_scene_finish(&scene);
+    assert_true(sum > 1);
+    assert_within(off / sum, 0.06, BOUND_NOISE);
+}
+
 // Two runs, pixel by pixel.
 static void same_bytes(void **state)
 {
@@ -425,7 +451,7 @@ int main(void)
         cmocka_unit_test(fluence),        cmocka_unit_test(noise),
         cmocka_unit_test(obsolescence),   cmocka_unit_test(skips),
         cmocka_unit_test(same_bytes),     cmocka_unit_test(lobes),
-        cmocka_unit_test(among_surfaces),
+        cmocka_unit_test(among_surfaces), cmocka_unit_test(probes_among_surfaces),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -7,6 +7,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 export XDG_CACHE_HOME="$work/cache"
+export MESA_SHADER_CACHE_DIR="$helpers/driver-cache" # kernels that any test has had compiled
 failures=0
 
 fail() {

@@ -246,7 +246,22 @@ static void temperatures(void **state)
                 maximum(worst, fabs(c.data[3 * i + ch] - 2.0 * rgb[ch]) / (2.0 * rgb[0] + 1e-12));
         }
     }
-    assert_true(within(worst, 1e-5, NULL, "radiance of a grid of temperatures"));
+    assert_true(within(worst, 1e-6, NULL, "radiance of a grid of temperatures"));
+    // One voxel that is far hotter leaves the others as they are; NaN is refused also where nothing else is wrong.
+    const float outlier[4] = {0.4f, 0.6f, 1, 666}, missing[4] = {0, NAN, 0, 0};
+    tyn_color_grid hot;
+    worst = 0;
+    assert_int_equal(tyn_color_grid_of_temperatures(&hot, size, outlier, &how, &log.log), TYN_OK);
+    for (int i = 0; i < 4; i++) {
+        float rgb[3];
+        tyn_blackbody(400 + 1500 * (double)outlier[i], rgb);
+        worst = maximum(worst, fabs(hot.data[3 * i] / (2.0 * rgb[0]) - 1));
+    }
+    tyn_color_grid_finish(&hot);
+    assert_true(within(worst, 3e-6, NULL, "radiance beside an outlier"));
+    assert_int_equal(tyn_color_grid_of_temperatures(&hot, size, missing, &how, &log.log),
+                     TYN_ERR_PARAMS);
+    io_log_init(&log);
     assert_true(c.max == c.data[6] && c.channels == 3 && c.data[9] == 0);
     tyn_color_grid_finish(&c);
     how.luminance = 7;

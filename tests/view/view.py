@@ -677,6 +677,7 @@ def main():
             continue
         before = len(failures)
         with tempfile.TemporaryDirectory() as work:
+            os.environ.setdefault("MESA_SHADER_CACHE_DIR", os.path.join(HELPERS, "driver-cache")) # of all tests
             os.environ["XDG_CACHE_HOME"] = os.environ.get("VIEW_CACHE", os.path.join(work, "cache"))
             screen = Screen(work)
             start = time.time()

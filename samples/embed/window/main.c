@@ -396,7 +396,7 @@ int main(int argc, char **argv)
         }
     }
     bool ok = true;
-    if (argc > 3 && frames) {
+    if (argc > 3 && frames && a.view.width) {
         const uint32_t last = (uint32_t)((frames - 1) % HOST_SLOTS);
         host_wait(&a.h, last);
         ok = write_picture(argv[3], a.chain.extent, a.images[last].color_down.data);

@@ -96,6 +96,11 @@ bool swapchain_resize(host *h, swapchain *s, VkExtent2D size)
     VkSwapchainKHR old = s->chain;
     s->chain = VK_NULL_HANDLE;
     drop_images(h, s);
+    if (!(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
+        fprintf(stderr, "embed-window: images of the window cannot be copied into\n");
+        exit(1);
+    }
+    const bool opaque = can.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
     if (s->extent.width && s->extent.height) {
         const uint32_t wanted = can.minImageCount + 1;
         require(DEVICE(h, vkCreateSwapchainKHR)(
@@ -112,7 +117,8 @@ bool swapchain_resize(host *h, swapchain *s, VkExtent2D size)
                         .imageArrayLayers = 1,
                         .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                         .preTransform = can.currentTransform,
-                        .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
+                        .compositeAlpha = opaque ? VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR
+                                                 : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR,
                         .presentMode = VK_PRESENT_MODE_FIFO_KHR,
                         .clipped = VK_TRUE,
                         .oldSwapchain = old,

@@ -2,7 +2,7 @@
 #pragma once
 #include "../host.h"
 
-enum { SWAPCHAIN_IMAGES = 8 };
+enum { SWAPCHAIN_IMAGES = 16 };
 
 typedef struct swapchain {
     VkSurfaceKHR surface; // the swapchain's own once it is open
