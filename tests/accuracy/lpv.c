@@ -114,7 +114,7 @@ static void furnace(void **state)
         double mean, brightest; // off; above 1 - T
     } runs[] = {
         {"lpv.iterations=256", 0.2, 0.3},
-        {"lpv.iterations=256 lpv.extinction=exact", 0.04, 0.1},
+        {"lpv.iterations=256 lpv.extinction=exact", 0.02, 0.1},
     };
     gpu_test *t = *state;
     tyn_scene scene;

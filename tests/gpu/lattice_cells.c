@@ -107,8 +107,10 @@ static void means_of_voxels(void **state)
                                    2 * (n / CELLS / CELLS) + k / 4};
                 double v[4], scaled, cosine;
                 for (int q = 0; q < 4; q++) {
-                    const float *constant[] = {s.medium.sigma_s, s.medium.sigma_a,
-                                               &s.medium.phase[0].g, s.medium.emission};
+                    const float g[3] = {s.medium.phase[0].g, s.medium.phase[1].g,
+                                        s.medium.phase[2].g};
+                    const float *constant[] = {s.medium.sigma_s, s.medium.sigma_a, g,
+                                               s.medium.emission};
                     v[q] = variant  ? voxels_mean(texels[q][0], FINE, 4, c, at)
                            : q == 2 ? (double)constant[q][c]
                                     : (double)constant[q][c] * voxels_mean(density, FINE, 1, 0, at);
