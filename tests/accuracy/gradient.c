@@ -6,6 +6,7 @@
 #include "path_run.h"
 #include "picture.h"
 #include "sky.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -178,6 +179,11 @@ static void lamps(void **state)
                       split);
         assert_true(samples == 512);
         assert_true(rbf >= cases[i].ratio * own);
+        // What the paper has in Fig 3, with a lamp far from its samples.
+        assert_true(todo_if(
+            cases[i].ratio < 3, rbf >= 3 * own,
+            "in a lamp's glow, and between clumps, 512 samples are too few for gradients as well",
+            "radial functions three times as far off, a lamp %s", cases[i].name));
         assert_true(within(own, cases[i].bound, NULL, "a lamp %s", cases[i].name));
         assert_true(within(published, cases[i].published, NULL, "as published, %s", cases[i].name));
         assert_true(within(finer, cases[i].split, NULL, "split, a lamp %s", cases[i].name));

