@@ -1,6 +1,7 @@
 // gradient.c -- method `gradient`: what samples with gradients are off by, against light followed to every cell and against
 // `path` ended after one scattering.
 #include "bound.h"
+#include "gradient_scenes.h"
 #include "numbers.h"
 #include "offline_frame.h"
 #include "path_run.h"
@@ -13,27 +14,6 @@
 #include <string.h>
 
 enum { SIZE = 48, N = 40 };
-
-static tyn_scene *open_scene(void)
-{
-    tyn_scene *scene = malloc(sizeof *scene);
-    tyn_scene_init(scene);
-    return scene;
-}
-
-static void close_scene(tyn_scene *scene)
-{
-    tyn_scene_finish(scene);
-    free(scene);
-}
-
-static tyn_scene *cube(float sigma_s, float sigma_a, float g)
-{
-    tyn_scene *scene = open_scene();
-    const tyn_medium medium = grey_medium(sigma_s, sigma_a, g);
-    scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
-    return scene;
-}
 
 // Clumps with holes.
 static tyn_scene *clumps(float sigma_s, float sigma_a, float g)
