@@ -35,7 +35,7 @@ static bool has_light(const tyn_frame_scene *frame)
 static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_view_inputs *view)
 {
     tyn_add_beams(g, job, s);
-    if (job->frame->num_triangles && tyn_vpls_bounce(job)) {
+    if (job->frame->num_triangles && job->outputs & TYN_PICTURE_OUTPUTS && tyn_vpls_bounce(job)) {
         tyn_add_vpls(g, job, s);
     }
     tyn_add_radials(g, job, s);
