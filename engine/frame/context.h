@@ -23,7 +23,8 @@ struct tyn_context {
     tyn_graph *graph;
     // What the last declaration was made from; the graph reads it until it has recorded.
     tyn_frame_scene frame;
-    struct camera_block impostor; // a march made now sees the media by, where the picture is an impostor
+    // A march made now sees the media by, where the picture is an impostor.
+    struct camera_block impostor;
     tyn_atlas atlas, colors;
     const tyn_scene *scene;
     float (*points)[3]; // probe points in M
@@ -37,7 +38,7 @@ struct tyn_context {
     float mean_density, typical_density;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     tyn_map_light map_light;
-    void *env_cdf; // of a method that reads it
+    void *env_cdf;          // of a method that reads it
     float (*phase_rows)[4]; // tables of phase functions, as shaders read them
     uint64_t phase_hash;    // of the tables that they are of; 0: none
     tyn_surface_data surfaces;

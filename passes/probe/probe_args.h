@@ -11,7 +11,7 @@ struct probe_args {
     tyn_uint num_points;
     tyn_uint scattered_only;
     tyn_uint local_lights; // TYN_PROBE_LOCAL_*
-    tyn_uint cells; // 1: lattice_cells is there
+    tyn_uint cells;        // 1: lattice_cells is there
     tyn_vec3 world[3];
 };
 

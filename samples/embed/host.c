@@ -154,9 +154,8 @@ static bool open_device(host *h, const host_wants *wants)
             continue;
         }
         const char *extensions[MOST_EXTENSIONS];
-        const uint32_t num_extensions =
-            add_names(extensions, add_names(extensions, 0, needs->extensions),
-                      wants->device_extensions);
+        const uint32_t num_extensions = add_names(
+            extensions, add_names(extensions, 0, needs->extensions), wants->device_extensions);
         const float priority = 1.0f;
         const VkDeviceQueueCreateInfo queue = {
             .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

@@ -46,7 +46,7 @@ TYN_ASSERT_SIZE(medium_block, 124 + 3 * sizeof(tyn_phase));
 
 // Grids of colours of a shape, each with a place in the texture "colors".
 #define TYN_COLORS_EMISSION 0 // `emission` is multiplied with it in place of the density
-#define TYN_COLORS_RADIANCE 1 // of black bodies: the absorption times it is emitted as well, W/(m^2 sr)
+#define TYN_COLORS_RADIANCE 1 // of black bodies, W/(m^2 sr): times the absorption it is emitted
 #define TYN_COLORS_ALBEDO 2   // sigma_s over sigma_s + sigma_a, in place of the coefficients' own
 #define TYN_COLORS_NUM 3
 struct shape_colors {

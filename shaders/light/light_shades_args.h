@@ -13,7 +13,8 @@
 #define TYN_LIGHT_SHADES_MAX (TYN_ORDINATES_MAX + TYN_LIGHT_LIST_MAX)
 
 struct light_shades_range { // of a light
-    tyn_uint first, count; // in `shades`; 0: it is one direction, and has a shadow map of its own or none
+    // In `shades`; 0: it is one direction, and has a shadow map of its own or none.
+    tyn_uint first, count;
     tyn_uvec2 pad;
 };
 TYN_ASSERT_SIZE(light_shades_range, 16);

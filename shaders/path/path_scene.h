@@ -102,9 +102,9 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
     spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
     spec[TYN_PATH_SPEC_FEW] = p->triangles <= TYN_SURFACE_FEW ? p->triangles : 0;
     spec[TYN_PATH_SPEC_FLAGS] =
-        (p->tabled ? TYN_PATH_TABLED : 0) | (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
-        (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
-        (p->num_lamps ? TYN_PATH_LAMPS : 0) |
+        (p->tabled ? TYN_PATH_TABLED : 0) | (p->repeat ? TYN_PATH_REPEAT : 0) |
+        (p->sphere ? TYN_PATH_SPHERE : 0) | (p->emissive ? TYN_PATH_EMISSIVE : 0) |
+        (p->mixture && lights ? TYN_PATH_MIXTURE : 0) | (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
         (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one

@@ -249,7 +249,8 @@ static void unknown_members(void **state)
          "known here: medium shape repeat"},
         {"'density scattering': 1", "", "",
          "extensions.TYN_participating_media.media[0].density scattering: not known and left out; "
-         "known here: scattering absorption emission density temperature emission_density albedo phase "
+         "known here: scattering absorption emission density temperature emission_density albedo "
+         "phase "
          "anisotropy"},
         {"'scatt\\nering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatt?ering: not known and left out; known "

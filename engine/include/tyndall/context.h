@@ -139,9 +139,9 @@ typedef struct tyn_view {
     // Not {0}: the picture is a part of one of `whole` (width, height), which camera or matrices are of, from `corner` (column,
     // row) on.
     uint32_t whole[2], corner[2];
-    uint32_t outputs;       // set of tyn_output; 0 = RADIANCE
-    bool no_background;     // RGB is the medium alone, premultiplied
-    float exposure_ev;      // for DISPLAY
+    uint32_t outputs;   // set of tyn_output; 0 = RADIANCE
+    bool no_background; // RGB is the medium alone, premultiplied
+    float exposure_ev;  // for DISPLAY
     uint32_t seed;
     // Progressive methods (path): this record adds samples [first_sample, first_sample + num_samples)
     // of every pixel or point to what the context has accumulated; first_sample 0 starts anew.
@@ -174,8 +174,8 @@ typedef struct tyn_frame_images {
 // 1048576 texels. tyndall/light.glsl reads them, with the matrix of tyn_context_light.
 typedef struct tyn_frame_lights {
     const tyn_image *red, *green, *blue; // Required
-    bool
-        unscattered; // with light that comes straight from lights; else what has scattered, was emitted or reflected
+    // With light that comes straight from lights; else what has scattered, was emitted or reflected.
+    bool unscattered;
 } tyn_frame_lights;
 
 typedef struct tyn_frame {

@@ -32,9 +32,10 @@ typedef struct tyn_color_grid {
     char *name;        // for messages; may be NULL
     uint32_t size[3];  // voxels, 1 to 65536
     uint32_t channels; // Required: 3: R, G, B of each voxel; 1: grey
-    float *data;       // size[0]*size[1]*size[2] * channels, x fastest; >= 0, finite; owned by the scene
-    float max;         // Required: no value of data is larger
-    uint64_t hash;     // of data, as tyn_volume.hash
+    // size[0]*size[1]*size[2] * channels, x fastest; >= 0, finite; owned by the scene.
+    float *data;
+    float max;     // Required: no value of data is larger
+    uint64_t hash; // of data, as tyn_volume.hash
 } tyn_color_grid;
 
 // Radiance of a black body, linear RGB (Rec.709), W/(m^2 sr), as light of lamps is counted here: luminance in cd/m^2 over
@@ -48,9 +49,10 @@ typedef struct tyn_phase {
     float g;        // mean cosine, (-1, 1)
     uint32_t table; // 1 + index into scene.phase_tables; 0: the Henyey-Greenstein lobe of g
     // Of what is in the table; else 0.
-    float delta;             // part of it that delta scaling counts as going straight on, [0, 1)
-    float forward, backward; // g of the Henyey-Greenstein lobes that are as high straight on and straight back, [0, 1)
-    uint32_t key;            // another for other values
+    float delta; // part of it that delta scaling counts as going straight on, [0, 1)
+    // Mean cosines g of the Henyey-Greenstein lobes that are as high straight on and straight back, [0, 1).
+    float forward, backward;
+    uint32_t key; // another for other values
 } tyn_phase;
 
 // A phase function as values at the angles 4 atan((k / (TYN_PHASE_NODES - 1))^4), closest where lobes are narrow;
@@ -73,9 +75,11 @@ enum { TYN_MAX_PHASE_NUMBERS = 65536, TYN_MAX_PHASE_LOBES = 16 };
 typedef struct tyn_phase_form {
     uint32_t count;              // of lobes, moments, or angles with their values
     const tyn_phase_lobe *lobes; // their sum
-    const double *moments; // Legendre moments chi_l of p = sum_l (2 l + 1) / (4 pi) chi_l P_l; chi_0 is 1, within 1 %
-    const double *angles;  // radians, from 0 to pi, increasing
-    const double *values;  // at the angles, 1/sr, linear between them; integral over the sphere 1, within 1 %
+    // Legendre moments chi_l of p = sum_l (2 l + 1) / (4 pi) chi_l P_l; chi_0 is 1, within 1 %.
+    const double *moments;
+    const double *angles; // radians, from 0 to pi, increasing
+    // At the angles, 1/sr, linear between them; integral over the sphere 1, within 1 %.
+    const double *values;
 } tyn_phase_form;
 
 // Coefficients at density 1, linear RGB.
@@ -90,14 +94,17 @@ typedef struct tyn_medium {
     int32_t volume; // Required: index into scene.volumes; -1: homogeneous, density 1
     // Grids that vary the medium beyond its density: 1 + index into scene.color_grids, 0: none.
     uint32_t emission_grid; // what `emission` is multiplied with, in place of the density
-    uint32_t radiance_grid; // W/(m^2 sr), of black bodies: the absorption at a point times it is emitted as well
-    uint32_t albedo_grid;   // 0 to 1: sigma_s / (sigma_s + sigma_a), in place of the coefficients' own; their sum stays
+    // W/(m^2 sr), of black bodies: the absorption at a point times it is emitted as well.
+    uint32_t radiance_grid;
+    // 0 to 1: sigma_s / (sigma_s + sigma_a), in place of the coefficients' own; their sum stays.
+    uint32_t albedo_grid;
 } tyn_medium;
 static inline float tyn_medium_scale(const tyn_medium *medium)
 {
     return medium->density_scale == 0.0f ? 1.0f : medium->density_scale;
 }
-TYN_API void tyn_medium_clear(tyn_medium *medium); // coefficients 0, no grids of colours: it is as if it were not there
+// Coefficients 0, no grids of colours: it is as if it were not there.
+TYN_API void tyn_medium_clear(tyn_medium *medium);
 
 typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shape_kind;
 

@@ -37,7 +37,8 @@ typedef struct tyn_scene_refs {
     // Where the picture is an impostor: the camera that it is shown by; `camera` then sees all of the media, from where the
     // march was made last. Else {0}.
     tyn_ref shown_camera;
-    tyn_ref phases; // tables of phase functions (phase_table.glsl); {0}: every phase function is one lobe
+    // Tables of phase functions (phase_table.glsl); {0}: every phase function is one lobe.
+    tyn_ref phases;
     tyn_ref resumed[6]; // tyn_view.resume: its images, in their order; {0}: none
 } tyn_scene_refs;
 
