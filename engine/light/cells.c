@@ -230,7 +230,7 @@ void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *
     choose_channels(s, job->scene, frame);
     add_cells(g, job, s);
     tyn_add_walls(g, job, s);
-    if (s->sky.ordinates.resource) {
+    if (s->sky.ordinates.resource && !s->sky.columns.columns.resource) {
         add_columns(g, job, s);
     }
     if (s->sky.maps.sky_maps.resource) {

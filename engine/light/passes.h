@@ -15,6 +15,7 @@
 #include "passes/lattice_cells/lattice_cells.h"
 #include "passes/walls/walls.h"
 #include "passes/wall_light/wall_light.h"
+#include "passes/walls_beyond/walls_beyond.h"
 #include "passes/rooms/rooms.h"
 #include "passes/columns_average/columns_average.h"
 #include "passes/columns/columns.h"

@@ -121,7 +121,7 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     }
     tyn_sky *sky = &s->sky;
     sky->split = params.split;
-    bool regions = tyn_is_lit(env->sky) && (env->has_map || !params.split);
+    bool regions = tyn_is_lit(env->sky) && (env->has_map || !params.split || directions);
     if (!regions && !params.num_fixed) {
         return;
     }
@@ -176,12 +176,8 @@ void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_
             job,
             "among surfaces the medium is lit by the mean of the environment map and by its suns");
     }
-    // Of a map that surfaces may hide the mean comes with the ordinates.
-    const bool hidden = s->sky.maps.sky_maps.resource && frame->environment.has_map;
+    // Of a sky that surfaces may hide the mean comes with the ordinates.
+    const bool hidden = s->sky.maps.sky_maps.resource != 0;
     s->mean_from_all_sides = tyn_is_lit(frame->environment.sky) && !hidden &&
                              (s->sky.split || !s->sky.ordinates.resource);
-    if (s->mean_from_all_sides && maps && tyn_has_walls(frame)) {
-        tyn_job_warn(job, "accuracy: the environment's light comes between surfaces along the "
-                          "lattice's 14 directions: behind openings it falls in patches");
-    }
 }

@@ -115,8 +115,8 @@ static void add_surfaces_alone(tyn_graph *g, const tyn_job *job, tyn_sources *s,
                                tyn_view_inputs *view)
 {
     tyn_add_shadows(g, job, s);
-    tyn_add_vpls(g, job, s);
     tyn_add_surroundings(g, job, true, s);
+    tyn_add_vpls(g, job, s);
     tyn_add_surfaces(g, job, view);
     tyn_add_picture(g, job, view);
 }
@@ -124,17 +124,22 @@ static void add_surfaces_alone(tyn_graph *g, const tyn_job *job, tyn_sources *s,
 static void add_lights(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
+    tyn_lattice_params lattice;
+    tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
     tyn_add_beams(g, job, s);
-    if (!tyn_is_periodic(frame)) {
-        tyn_add_vpls(g, job, s);
-    }
-    tyn_add_radials(g, job, s);
     tyn_add_shadows(g, job, s);
     if (frame->num_triangles && tyn_is_periodic(frame)) {
         tyn_job_warn_suns(job,
                           tyn_has_walls(frame) ? "surfaces and the medium among them" : "surfaces");
     }
     tyn_add_surroundings(g, job, true, s);
+    if (!tyn_is_periodic(frame)) {
+        if (s->sky.maps.sky_maps.resource) {
+            tyn_add_columns(g, job, lattice.shape.cells, s);
+        }
+        tyn_add_vpls(g, job, s);
+    }
+    tyn_add_radials(g, job, s);
 }
 
 // Is there light that the lattice has to carry on?

@@ -39,10 +39,10 @@ static double forward(const tyn_regime *r)
     return tyn_limit_along(curve, COUNT(curve), lobe) * fmin(1, r->mean_depth);
 }
 
-// Of the sky's light surfaces reflect about half; an eighth of all is what others get of that in a courtyard.
+// Courtyards 2 %, rooms with a window 5 %.
 static double sky(const tyn_regime *r)
 {
-    return 0.1 * fmin(1, r->sky_on_surfaces);
+    return 0.04 * fmin(1, r->sky_on_surfaces);
 }
 
 #define REFUSES(light)                                                                             \
@@ -148,9 +148,8 @@ const tyn_limit tyn_limits_pop[] = {
      .where = {TYN_ABOVE(sky_on_surfaces, 0.05)},
      .error = sky,
      .level = TYN_LIMIT_STRAINED,
-     .advice = {"sky among surfaces: what those beyond the medium's box reflect of it lights no "
-                "others, and its shadows are those of 256 directions (about %g %% off; rooms with "
-                "a window 10 %%)",
+     .advice = {"sky among surfaces: its shadows are those of 256 directions (about %g %% off; "
+                "rooms with a window 5 %%)",
                 {TYN_LIMIT_ERROR}},
      .source = "docs/accuracy-of-skies.md, \"Among surfaces\""},
     TYN_LIMIT_FLOATS,

@@ -59,7 +59,7 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
         [LATTICE_PORT_WALL_LIGHT] = s->walls.light,
         [LATTICE_PORT_GUESS] = s->sky.guess,
     };
-    tyn_connect(refs, LATTICE_PORT_WALL_LINKS, s->walls.cut);
+    tyn_connect(refs, LATTICE_PORT_WALL_LINKS, s->walls.around);
     memory last = {0};
     if (params.warm) {
         add_recall(g, job, s, refs, &last);
@@ -68,7 +68,7 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
     field->moments = refs[LATTICE_PORT_MOMENTS];
     field->leaks = refs[LATTICE_PORT_LEAKS];
     field->wall_power =
-        s->walls.cut.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
+        s->walls.around.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
     tyn_job_counters(g, job, &tyn_pass_lattice, refs[LATTICE_PORT_COUNTERS]);
     field->cell = s->lattice.side;
     field->one_channel = s->lattice.shape.channels == 1;

@@ -116,7 +116,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     const tyn_sky *ordinates = &in->sources->sky;
     const bool shadowed = ordinates->maps.sky_maps.resource && !in->no_sky_on_surfaces;
     // Of a constant environment directions have the light only where the lattice has not.
-    const bool in_directions = shadowed && (job->frame->environment.has_map || !ordinates->split);
+    const bool in_directions = shadowed;
     params.sky = tyn_is_lit(sky) && !in->no_sky_on_surfaces && !in_directions;
     params.sky_fan = ordinates->fan;
     if (shadowed && in->sources->lattice.side > 0) {
@@ -136,7 +136,8 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         tyn_job_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                           "environment as if nothing stood around them");
     }
-    if (shadowed && !params.sky && (in->sources->walls.cut.wall_links.resource == 0 || beyond)) {
+    if (shadowed && !params.sky && !in->sources->surface_light.of_sky &&
+        (in->sources->walls.cut.wall_links.resource == 0 || beyond)) {
         tyn_job_warn(job, "what surfaces beyond the media's box reflect of the environment's light "
                           "lights no others");
     }
@@ -150,6 +151,8 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         [SHADE_PORT_MOMENTS] = in->sources->walls.cut.wall_links.resource || params.outside
                                    ? in->field->moments
                                    : (tyn_ref){0},
+        [SHADE_PORT_AROUND_LINKS] = in->sources->walls.around.wall_links,
+        [SHADE_PORT_AROUND_CELLS] = in->sources->walls.around.wall_cells,
         [SHADE_PORT_ROOMS] = in->sources->surface_light.rooms,
     };
     tyn_connect(refs, SHADE_PORT_DISTANCES, seen);

@@ -68,9 +68,11 @@ uint nearest_kept(vec3 d)
 void write(uint n)
 {
     const ordinates_piece own = pieces[n];
-    // Directions count by light: one of a region whose light and dark cancel must not turn its heir.
-    vec3 light = own.light, moment = own.size * directions[n];
-    vec2 size = own.size * vec2(own.solid_angle, 1.0);
+    // Directions count by light: one of a region whose light and dark cancel must not turn its heir. Of an even sky, of which
+    // split regions have none, each has its own.
+    float weight = own.size > 0.0 ? own.size : 1.0;
+    vec3 light = own.light, moment = weight * directions[n];
+    vec2 size = weight * vec2(own.solid_angle, 1.0);
     vec4 even = vec4(own.solid_angle, own.outwards);
     for (uint k = 0u; k < num_folded; k++) {
         const ordinates_piece other = pieces[folded_ones[k]];

@@ -55,14 +55,7 @@ void main()
     float area = args.texel * across / max(abs(cosine), LEAST_COSINE);
 
     surface_material m = surface_material_at(t.w);
-    vec3 colour = vec3(1.0);
-    if (m.texture != TYN_SURFACE_NO_TEXTURE) {
-        // The mean of the texture over the texel, taken as a square on the surface.
-        mat3x2 uv = surface_uvs(t);
-        float scale = sqrt(abs(uv[1].x * uv[2].y - uv[1].y * uv[2].x) / max(length(facet), 1e-30) * area);
-        colour = surface_texture_around(m.texture, uv[0] + weights.y * uv[1] + weights.z * uv[2], vec2(scale, 0.0),
-                                        vec2(0.0, scale));
-    }
+    vec3 colour = surface_colour_over(t, weights.yz, area);
     rng_state rng = rng_start(uint(gl_FragCoord.x), uint(gl_FragCoord.y), 0u);
     flux = vec4(light.color * args.texel * share * surface_reflected(m, colour), 0.0);
     if (any(greaterThan(flux.rgb, vec3(0.0))) && // no rays for what is black

@@ -1,8 +1,9 @@
 // shade_faces.comp -- what leaves the medium's box, for the surfaces outside it: into the image of shade_faces.h.
 //
 // A thread a patch. Light that a cell at the box's face sends out is the net flux there, on the line through the
-// fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Its directions are those of
-// radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
+// fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Where surfaces close by send light
+// back (walls_beyond) what leaves is more than the net flux by that: their albedo times phi / 4 + F.n / 2. Its directions are
+// those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
@@ -21,6 +22,8 @@ TYN_UNIFORM(1, environment, env_block environment);
 layout(binding = 2) uniform sampler3D moments_tex;
 layout(binding = 3) uniform usamplerBuffer wall_links_words; // wall_links
 layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;
+TYN_READ(5, around_links, uint around_links[]);
+TYN_READ(6, around_cells, wall_cell around_cells[]);
 
 const float PI = 3.14159265358979;
 
@@ -65,6 +68,10 @@ void main()
             uint back = walls_link(-outwards);
             behind = (links >> back & 1u) != 0u ? c : behind;
             bool open = (links >> link & 1u) == 0u, lit = false;
+            vec3 returns = vec3(0.0); // of what leaves
+            if (has(SHADE_AROUND) && (around_links[index] >> link & 1u) != 0u) {
+                returns = around_cells[index].albedo;
+            }
             for (int ch = 0; ch < channels && open; ch++) {
                 ivec3 shift = ivec3(0, 0, ch * dims.z);
                 vec4 m = texelFetch(moments_tex, c + shift, 0), inner = texelFetch(moments_tex, behind + shift, 0);
@@ -72,6 +79,8 @@ void main()
                 lit = lit || m.x > 0.0;
                 float out_flux = dot(m.yzw, vec3(outwards));
                 vec3 tint = channels == 1 ? args.tint : vec3(ch == 0, ch == 1, ch == 2);
+                float returned = dot(returns, tint) / dot(tint, vec3(1.0));
+                out_flux += returned * max(0.25 * m.x + 0.5 * out_flux, 0.0);
                 net += out_flux * tint;
                 float sky = has(SHADE_SKY) ? 4.0 * PI * dot(environment.sky, tint) / dot(tint, tint) : 0.0;
                 mean += dot(tint, vec3(1.0)) * vec4(m.x - sky, m.yzw);

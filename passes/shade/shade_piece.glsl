@@ -46,6 +46,21 @@ vec3 clamped_light(vec3 irradiance)
     return max(irradiance, vec3(0.0));
 }
 
+// Is a place where the lattice has light for it? Also where it is in a wall of the lattice, which may be up to half a cell
+// outside: the link that it cuts leads there.
+bool lattice_lights(lattice_box box, vec3 x)
+{
+    vec3 beyond = x - clamp(x, vec3(0.0), vec3(box.dims)), off = abs(beyond);
+    float most = max(off.x, max(off.y, off.z));
+    bool inside = most < 0.02;
+    for (bool close = shade_has(SHADE_LATTICE) && !inside && most < 0.5; close; close = false) {
+        ivec3 outwards = ivec3(sign(beyond)) * ivec3(greaterThanEqual(off, vec3(most)));
+        ivec3 cell = clamp(ivec3(floor(x)), ivec3(0), box.dims - 1);
+        inside = (walls_links_of(lattice_index(box, cell)) >> walls_link(outwards) & 1u) != 0u;
+    }
+    return inside;
+}
+
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward.
 vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
@@ -58,7 +73,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     lattice_box box = shade_lattice();
     ivec3 dims = box.dims;
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
-    inside = all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(dims) + 0.02));
+    inside = lattice_lights(box, x);
     bool has_outside = shade_has(SHADE_OUTSIDE);
     // The nearest place on a face of the box that the surface goes through, as seen from inside and from just
     // outside; 1 there: how near.
@@ -102,7 +117,7 @@ bool inside_lattice(shade_point p)
 {
     lattice_box box = shade_lattice();
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
-    return all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(box.dims) + 0.02));
+    return lattice_lights(box, x);
 }
 
 // Light that changes little from pixel to pixel, but for that of VPLs.

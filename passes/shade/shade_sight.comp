@@ -31,6 +31,15 @@ bool open_between(vec3 from, vec3 to)
     return !surface_trace_world(ray, true, hit);
 }
 
+// How far one can go from a place along d (unit; M), m; `most` at most.
+float way_from(vec3 p, vec3 d, float most)
+{
+    surface_hit hit = surface_hit(most, SURFACE_NONE, vec2(0.0));
+    surface_ray ray =
+        surface_ray_make(surface_transform(surfaces.to_world, p), surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    return surface_trace_world(ray, false, hit) ? hit.t : most;
+}
+
 void main()
 {
     ivec3 at = ivec3(gl_GlobalInvocationID), size = imageSize(sight_image);
@@ -48,10 +57,17 @@ void main()
         int axis = face / 2;
         bool upper = (face & 1) != 0;
         float plane = upper ? hi[axis] : lo[axis], before = upper ? p[axis] - plane : plane - p[axis];
-        // A place a little behind the face is asked for in front of it: surfaces there lie between it and others.
-        vec3 from = p;
+        // A place a little behind the face is asked for in front of it: surfaces there lie between it and others, and the
+        // place between the face and them.
+        vec3 from = p, outwards = vec3(0.0);
         float lift = max(before, 0.25 * args.sight_edge);
-        from[axis] = upper ? plane + lift : plane - lift;
+        outwards[axis] = upper ? 1.0 : -1.0;
+        from[axis] = plane;
+        for (bool behind = before > -3.0 * args.sight_edge && before < lift; behind; behind = false) {
+            float way = way_from(from, outwards, lift);
+            lift = way < lift ? 0.5 * way : lift;
+        }
+        from += lift * outwards;
         vec4 seen = vec4(1.0);
         for (int k = before > -3.0 * args.sight_edge ? 0 : 4; k < 4; k++) {
             int texel = (1 + k) * SHADE_FACE_ENTRIES;

@@ -8,8 +8,8 @@
 #include "shaders/light/rsm_args.h"
 
 #define VPL_BLOCK 256
-#define VPL_LANES 32 // threads for a block: few, as they wait for each other
-#define VPL_MAX_SOURCES (4 + 64 + 2)
+#define VPL_LANES 32                     // threads for a block: few, as they wait for each other
+#define VPL_MAX_SOURCES (4 + 64 + 2 + 2) // suns, lamps, sides under the sky, sides that emit
 
 struct vpl_tile {
     TYN_STRUCT(rsm_tile) map;
@@ -27,7 +27,7 @@ struct vpl_plan {
     tyn_uint sources[VPL_MAX_SOURCES]; // first blocks: of each light's maps, of fronts, of backs
     TYN_STRUCT(vpl_tile) tiles[TYN_RSM_MAX_TILES];
 };
-TYN_ASSERT_SIZE(vpl_plan, 24 + 280 + 20 * 388);
+TYN_ASSERT_SIZE(vpl_plan, 24 + 288 + 20 * 390);
 
 // A VPL stands for the elements with cumulated weights in [from, to), partly where they reach beyond,
 // and lies on the surface of the element at the weight `at`.

@@ -9,7 +9,7 @@
 #include "shaders/surfaces/surface_args.h"
 #include "vpl_bounce_args.h"
 #include "shaders/light/vpl_visibility.glsl"
-#include "vpl_hilbert.glsl"
+#include "shaders/light/hilbert.glsl"
 
 const uint GROUP = 256u;
 layout(local_size_x = GROUP) in;
@@ -57,7 +57,7 @@ void main()
     if (args.later != 0u) {
         vec3 before = vec3(0.0), now = vec3(0.0);
         for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
-            before += imageLoad(bin_flux_image, ivec2(vpl_hilbert(VPL_BIN_SIDE, bin))).rgb;
+            before += imageLoad(bin_flux_image, ivec2(hilbert_texel(VPL_BIN_SIDE, bin))).rgb;
             now += flux_of(bin);
         }
         before = total_of(before);
@@ -66,7 +66,7 @@ void main()
         share = min(before / max(now, vec3(1e-30)), vec3(1.0));
     }
     for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
-        ivec2 to = ivec2(vpl_hilbert(VPL_BIN_SIDE, bin));
+        ivec2 to = ivec2(hilbert_texel(VPL_BIN_SIDE, bin));
         vec3 flux = share * flux_of(bin), before = vec3(0.0);
         if (args.later != 0u) {
             before = before_share * imageLoad(bin_flux_image, to).rgb;

@@ -5,7 +5,7 @@
 #define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
 #include "shaders/surfaces/surface_args.h"
-#include "vpl_hilbert.glsl"
+#include "shaders/light/hilbert.glsl"
 
 #define GEOMETRY_AT 4
 #define MATERIALS_AT 8
@@ -48,7 +48,7 @@ vpl_block vpl_block_at(uint index)
 
 ivec2 vpl_texel(vpl_block block, uint element)
 {
-    return ivec2(block.map.offset + vpl_hilbert(block.map.texels, block.before * VPL_BLOCK + element));
+    return ivec2(block.map.offset + hilbert_texel(block.map.texels, block.before * VPL_BLOCK + element));
 }
 
 uint vpl_triangle(uint block, uint element)

@@ -221,7 +221,7 @@ void main()
     }
     light.position += most_of(above) * light.direction;
     vec3 depth = vec3(0.0);
-    if (args.media != 0u && block.index < plan.front) {
+    if (args.media != 0u && block.index < plan.front && block.map.light < TYN_RSM_SKY) {
         depth = depth_from_light(block.map.light, light.position);
     }
     light.color = flux.rgb * exp(-depth) / VPL_PI;

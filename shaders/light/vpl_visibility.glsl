@@ -103,6 +103,7 @@ layout(set = 0, binding = VPL_PLANES) uniform sampler2D vpl_planes;
 // whether anything else does such rays do not tell, if the point is not far behind their ends: they are left out, and if all
 // are such, nothing does. Far behind, as in a corridor, there may be a door: it is hidden.
 const float VPL_ABSTAINS = 2.0; // times as far as the ray's end
+const float VPL_ROUNDING = 1e-3; // of the distance of the point: what planes of small triangles are off by
 
 float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
 {
@@ -120,15 +121,18 @@ float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
     bvec4 near = lessThan(vec4(r), VPL_ABSTAINS * stored);
     ivec2 place = ivec2(max(map.corner + first, vec2(0.0))); // without maps `first` is before them
-    vec4 hiding;
+    vec4 hiding, same;
     [[unroll]] for (int i = 0; i < 4; i++) {
         vec4 met = texelFetch(vpl_planes, place + ivec2(i & 1, i >> 1), 0);
-        hiding[i] = dot(met.xyz, away) < met.w || !near[i] ? 1.0 : 0.0;
+        float before = dot(met.xyz, away) - met.w;
+        hiding[i] = before < 0.0 || !near[i] ? 1.0 : 0.0;
+        same[i] = before > -VPL_ROUNDING * r || dot(met.xyz, normal) > 0.5 ? 1.0 : 0.0;
     }
-    // A surface is not in its own shadow (docs/measurements.md, "Constants").
-    vec4 lit = vec4(greaterThanEqual(stored, 0.95 * reach));
+    // A surface is not in its own shadow (docs/measurements.md, "Constants"). But what is close behind another, on which
+    // the ray ends, is: the inside of a closed room, along the edges of its walls.
+    vec4 lit = vec4(greaterThanEqual(stored, reach)) + vec4(lessThan(stored, reach)) * same * vec4(greaterThanEqual(stored, 0.95 * reach));
     float through = dot(shares, lit), stopped = dot(shares, hiding * (1.0 - lit));
-    return map.last > 0.0 && stopped > 0.0 ? through / (through + stopped) : 1.0;
+    return map.last > 0.0 && stopped > 0.0 ? clamp(2.0 * through / (through + stopped) - 0.5, 0.0, 1.0) : 1.0;
 }
 #endif
 #endif

@@ -1,6 +1,6 @@
 // surface_texture.glsl -- textures of surfaces, filtered trilinearly from their mip chains in a buffer.
 //
-// Define MATERIALS_AT (surfaces.glsl).
+// Define MATERIALS_AT, and GEOMETRY_AT for surface_colour_over (surfaces.glsl).
 #ifndef TYN_SURFACE_TEXTURE_GLSL
 #define TYN_SURFACE_TEXTURE_GLSL
 #include "surfaces.glsl"
@@ -69,5 +69,22 @@ vec3 surface_texture_around(uint index, vec2 uv, vec2 dx, vec2 dy)
     float more = lod - float(level);
     return more > 0.0 ? mix(c, surface_texture_level(t, uv, level + 1u), more) : c;
 }
+
+#ifdef GEOMETRY_AT
+// The mean colour of a triangle's material, 1 without a texture, over a square of `area` (m^2) of the surface around a place.
+// `barycentric`: weights of the second and third corner there.
+vec3 surface_colour_over(uvec4 triangle, vec2 barycentric, float area)
+{
+    uint texture_of = surface_material_at(triangle.w).texture;
+    if (texture_of == TYN_SURFACE_NO_TEXTURE) {
+        return vec3(1.0);
+    }
+    vec3 a = surface_position(triangle.x), b = surface_position(triangle.y), c = surface_position(triangle.z);
+    mat3x2 uv = surface_uvs(triangle);
+    float scale = sqrt(abs(determinant(mat2(uv[1], uv[2]))) / max(length(cross(b - a, c - a)), 1e-30) * area);
+    return surface_texture_around(texture_of, uv[0] + barycentric.x * uv[1] + barycentric.y * uv[2], vec2(scale, 0.0),
+                                  vec2(0.0, scale));
+}
+#endif
 
 #endif

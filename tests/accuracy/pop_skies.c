@@ -16,12 +16,16 @@ enum { SIZE = 48, WIDE = 128, HIGH = 64 };
 
 // ---- skies --------------------------------------------------------------------------------------
 
-typedef enum sky_kind { BLUE, WINDOW } sky_kind;
+typedef enum sky_kind { BLUE, WINDOW, EVEN } sky_kind;
 
-// BLUE: bright along the horizon, dark below it. WINDOW: a rectangle of light up in front, all else black.
+// BLUE: bright along the horizon, dark below it. WINDOW: a rectangle of light up in front, all else black. EVEN: 1, without a map.
 static void add_sky(tyn_scene *scene, sky_kind kind)
 {
     tyn_environment *map = &scene->environment;
+    if (kind == EVEN) {
+        scene_set_sky(scene, 1);
+        return;
+    }
     sky_constant_map(map, WIDE, HIGH, 0);
     for (int i = 0; i < WIDE * HIGH; i++) {
         const double up = cos(M_PI * (i / WIDE + 0.5) / HIGH), u = (i % WIDE + 0.5) / WIDE;
@@ -98,7 +102,7 @@ static void leaf_beside_a_cloud(void **state)
 static void closed_rooms(void **state)
 {
     gpu_test *t = *state;
-    static const double bounds[4] = {1e-6, 1e-3, 5e-3, 7e-3};
+    static const double bounds[4] = {1e-6, 1e-6, 5e-3, 7e-3};
     bool good = true;
     for (int k = 0; k < 4; k++) {
         const float x = k < 2 ? 0 : 3;
@@ -126,10 +130,14 @@ static void closed_rooms(void **state)
         const double mean = sum / (3 * SIZE * SIZE);
         printf("closed room at x = %g, turned by %g: mean %g, %d numbers are not 0\n", (double)x,
                k % 2 ? 0.5 : 0, mean, lit);
-        good = within(mean, bounds[k], k ? NULL : "a few pixels, by rounding",
-                      "closed room %d, mean", k) &&
+        const bool dim = within(mean, bounds[k], k > 1 ? NULL : "a few pixels, by rounding",
+                                "closed room %d, mean", k);
+        good = todo_if(k == 2, dim,
+                       "what the ground outside reflects of the sky gets in past the maps of 16 "
+                       "texels of what virtual lights see",
+                       "closed room %d, mean", k) &&
                good;
-        good = todo_if(true, lit == 0,
+        good = todo_if(k != 1, lit == 0,
                        "maps of 256 texels let some of the light in beside the edges of walls",
                        "closed room %d", k) &&
                good;
@@ -206,10 +214,6 @@ enum { TRAY, AROUND, ROOM, YARD };
 static void against_path(void **state)
 {
     gpu_test *t = *state;
-    static const char beside[] =
-        "surfaces just beyond the box get the net flux of its faces, which "
-        "what they reflect lessens",
-                      inside[] = "of the light that walls reflect in a room too much is lost";
     static const struct {
         const char *name;
         int scene;
@@ -220,12 +224,17 @@ static void against_path(void **state)
     } cases[] = {
         {"tray, blue", TRAY, BLUE, 0.6f, 0.03, 0.025, NULL},
         {"tray, window", TRAY, WINDOW, 0.6f, 0.08, 0.02, NULL},
-        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.08, 0.03, beside},
-        {"room, blue", ROOM, BLUE, 0.5f, 0.15, 0.05, inside},
-        {"room, window", ROOM, WINDOW, 0.5f, 0.15, 0.05, NULL},
-        {"dark yard, blue", YARD, BLUE, 0.1f, 0.005, 0.004, NULL},
-        {"dark yard, window", YARD, WINDOW, 0.1f, 0.04, 0.025, NULL},
-        {"yard, blue", YARD, BLUE, 0.6f, 0.05, 0.04, NULL},
+        {"tray, even", TRAY, EVEN, 0.6f, 0.012, 0.01, NULL},
+        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.001, NULL},
+        {"tray around the fog, window", AROUND, WINDOW, 0.6f, 0.03, 0.007, NULL},
+        {"tray around the fog, even", AROUND, EVEN, 0.6f, 0.004, 0.002, NULL},
+        {"room, blue", ROOM, BLUE, 0.5f, 0.12, 0.05, NULL},
+        {"room, window", ROOM, WINDOW, 0.5f, 0.09, 0.006, NULL},
+        {"room, even", ROOM, EVEN, 0.5f, 0.1, 0.03, NULL},
+        {"dark yard, blue", YARD, BLUE, 0.1f, 0.004, 0.003, NULL},
+        {"dark yard, window", YARD, WINDOW, 0.1f, 0.015, 0.003, NULL},
+        {"yard, blue", YARD, BLUE, 0.6f, 0.012, 0.006, NULL},
+        {"yard, even", YARD, EVEN, 0.6f, 0.012, 0.004, NULL},
     };
     path_run runs;
     path_run_open(&runs, t->dev);

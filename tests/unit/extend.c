@@ -48,8 +48,8 @@ static void layout(void **state)
         SIZE(tyn_job, 408),
         SIZE(tyn_picture, 24),
         SIZE(tyn_picture_hook, 24),
-        SIZE(tyn_sources, 424),
-        SIZE(tyn_rsm, 6236),
+        SIZE(tyn_sources, 444),
+        SIZE(tyn_rsm, 6268),
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),
         SIZE(tyn_method, 88),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 3);
+    assert_int_equal(TYN_EXTEND_ABI, 4);
     assert_int_equal(changed, 0);
 }
 
@@ -189,7 +189,7 @@ static void passes(void **state)
     WRONG_PASS("1 to 31 letters", pass.name = "a-name-of-more-than-thirty-one-letters");
     WRONG_PASS("declare and record are required", pass.record = NULL);
     WRONG_PASS("0 ports", pass.num_ports = 0);
-    WRONG_PASS("49 ports", pass.num_ports = 49);
+    WRONG_PASS("57 ports", pass.num_ports = TYN_MAX_PORTS + 1);
     WRONG_PASS("debug port 1", pass.debug_port = 1);
     WRONG_PASS("'size'", pass.params_size = 3);
     WRONG_KERNEL("SPIR-V", kernel.spirv = NULL);

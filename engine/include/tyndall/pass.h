@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 enum {
-    TYN_MAX_PORTS = 48,
+    TYN_MAX_PORTS = 56,
     TYN_MAX_BINDINGS = 48,
     TYN_MAX_SPEC = 8,
     TYN_MAX_ARGS = 128,
@@ -244,11 +244,12 @@ typedef struct tyn_pass_desc {
     size_t holds; // offset into params of a tyn_hold; 0: its results are never old
 } tyn_pass_desc;
 
-// Of a pass whose tables and functions are called ports, kernels, declare and record.
+// Of a pass whose tables and functions are called ports, kernels, declare and record. More ports than there may be do not compile.
 #define TYN_PASS_TABLES(params_type)                                                               \
-    .ports = ports, .num_ports = TYN_COUNT(ports), .kernels = kernels,                             \
-    .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type), .declare = declare,     \
-    .record = record
+    .ports = ports,                                                                                \
+    .num_ports = TYN_COUNT(ports) + 0 * sizeof(char[TYN_COUNT(ports) <= TYN_MAX_PORTS ? 1 : -1]),  \
+    .kernels = kernels, .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type),     \
+    .declare = declare, .record = record
 
 // Fills params with zeros, then the defaults of the table.
 TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);

@@ -45,14 +45,17 @@ typedef struct tyn_surface_light {
     tyn_vpl_refs vpls; // {0} if surfaces send nothing on
     tyn_ref
         rooms; // cells of the lattice that are joined, and the VPLs in them; {0} without walls or VPLs
+    bool of_sky;  // what surfaces reflect of the sky is among the VPLs
+    bool bounces; // VPLs carry all reflections
 } tyn_surface_light;
 
 // Surfaces as the lattice sees them; {0} without.
 typedef struct tyn_walls {
     tyn_wall_refs cut;
-    tyn_ref hits;        // the triangles that cut links meet
-    tyn_ref light;       // what they reflect of light that is not the lattice's
-    tyn_ref light_power; // of virtual point lights, for the balance
+    tyn_wall_refs around; // with surfaces around the lattice: for its solve; cut, if there are none
+    tyn_ref hits;         // the triangles that cut links meet
+    tyn_ref light;        // what they reflect of light that is not the lattice's
+    tyn_ref light_power;  // of virtual point lights, for the balance
 } tyn_walls;
 
 // The cells of the lattice with their unscattered light: cubes that fill a box around the medium's (lattice_box_of of
@@ -92,7 +95,8 @@ typedef struct tyn_sources {
 TYN_API void tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // Optical depths along the strongest suns.
 TYN_API void tyn_add_beams(tyn_graph *g, const tyn_job *job, tyn_sources *s);
-// Virtual point lights of what surfaces reflect first and emit.
+// Virtual point lights of what surfaces reflect first and emit. Of the sky's light, too, if tyn_add_surroundings came before
+// (and, where there is a medium, tyn_add_columns).
 TYN_API void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // Optical depths around lamps and, if they are there, around virtual point lights.
 TYN_API void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s);
@@ -143,8 +147,8 @@ TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
 #define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
-    X(lattice_cells), X(walls), X(wall_light), X(rooms), X(columns_average), X(columns),           \
-        X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
+    X(lattice_cells), X(walls), X(walls_beyond), X(wall_light), X(rooms), X(columns_average),      \
+        X(columns), X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,9 @@
-// vpl_hilbert.glsl -- a curve through a square whose neighbours are neighbours in the square. No bindings.
-#ifndef TYN_VPL_HILBERT_GLSL
-#define TYN_VPL_HILBERT_GLSL
+// hilbert.glsl -- a curve through a square whose neighbours are neighbours in the square. No bindings.
+#ifndef TYN_HILBERT_GLSL
+#define TYN_HILBERT_GLSL
 
 // Texel d of a Hilbert curve through side x side texels, a power of two.
-uvec2 vpl_hilbert(uint side, uint d)
+uvec2 hilbert_texel(uint side, uint d)
 {
     uvec2 p = uvec2(0u);
     for (uint s = 1u; s < side; s *= 2u) {

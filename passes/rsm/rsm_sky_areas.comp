@@ -1,0 +1,44 @@
+// rsm_sky_areas.comp -- what triangles that reflect count for (rsm_sky_args.h). One workgroup a block.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "rsm_sky_args.h"
+#define GEOMETRY_AT 0
+#define MATERIALS_AT 4
+#include "shaders/surfaces/surface_frame.glsl"
+#include "shaders/surfaces/reflectance.glsl"
+
+layout(local_size_x = RSM_SKY_BLOCK) in;
+TYN_ARGS(rsm_sky_args args);
+TYN_WRITE(7, areas, float areas[]);
+TYN_WRITE(8, area_blocks, float area_blocks[]);
+#include "rsm_sky_places.glsl"
+
+shared float sums[RSM_SKY_BLOCK];
+
+vec3 corner(uint vertex)
+{
+    return surface_transform(surfaces.from_world, surface_position(vertex));
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationIndex;
+    float own = 0.0;
+    if (i < args.triangles) {
+        uvec4 t = surface_triangle_at(i);
+        if (surface_reflected(surface_material_at(t.w), vec3(1.0)) != vec3(0.0)) {
+            own = rsm_sky_count(corner(t.x), corner(t.y), corner(t.z));
+        }
+    }
+    sums[lane] = own < 1e30 ? own : 0.0; // also where it is no number
+    for (uint step = 1u; step < RSM_SKY_BLOCK; step *= 2u) {
+        barrier();
+        float before = lane >= step ? sums[lane - step] : 0.0;
+        barrier();
+        sums[lane] += before;
+    }
+    areas[i] = sums[lane];
+    if (lane == RSM_SKY_BLOCK - 1u) {
+        area_blocks[gl_WorkGroupID.x] = sums[lane];
+    }
+}

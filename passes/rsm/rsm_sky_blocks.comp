@@ -1,0 +1,38 @@
+// rsm_sky_blocks.comp -- what all blocks before each count for, and the whole. One workgroup.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "rsm_sky_args.h"
+
+layout(local_size_x = RSM_SKY_BLOCK) in;
+TYN_ARGS(rsm_sky_args args);
+TYN_UPDATE(0, area_blocks, float area_blocks[]);
+
+shared float sums[RSM_SKY_BLOCK];
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex, blocks = (args.triangles + RSM_SKY_BLOCK - 1u) / RSM_SKY_BLOCK;
+    uint share = (blocks + RSM_SKY_BLOCK - 1u) / RSM_SKY_BLOCK;
+    uint first = min(lane * share, blocks), end = min(first + share, blocks);
+    float sum = 0.0;
+    for (uint i = first; i < end; i++) {
+        sum += area_blocks[i];
+    }
+    sums[lane] = sum;
+    for (uint step = 1u; step < RSM_SKY_BLOCK; step *= 2u) {
+        barrier();
+        float before = lane >= step ? sums[lane - step] : 0.0;
+        barrier();
+        sums[lane] += before;
+    }
+    barrier();
+    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    for (uint i = first; i < end; i++) {
+        float own = area_blocks[i];
+        area_blocks[i] = before;
+        before += own;
+    }
+    if (lane == RSM_SKY_BLOCK - 1u) {
+        area_blocks[blocks] = sums[lane];
+    }
+}
