@@ -19,6 +19,9 @@ static void follow_lights(const tyn_job *job, const tyn_view_inputs *in, tyn_bal
         tyn_connect(refs, BALANCE_PORT_SURFACES, job->refs.geometry);
         tyn_connect(refs, BALANCE_PORT_MATERIALS, job->refs.materials);
         refs[BALANCE_PORT_EMITTERS] = job->refs.emitters;
+        if (in->sources->sky.maps.sky_maps.resource) {
+            refs[BALANCE_PORT_DIRECTIONS] = in->sources->sky.directions;
+        }
     }
 }
 
@@ -27,10 +30,6 @@ void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
     if (job->scene->num_shapes != 1 || job->scene->shapes[0].kind != TYN_SHAPE_BOX) {
         tyn_job_warn(job, "the balance is that of the box around the media: light that misses them "
                           "inside it counts as entering and as escaped");
-    }
-    if (in->sources->sky.maps.sky_maps.resource) {
-        tyn_job_warn(job, "surfaces hide some of the environment's light: what of it enters the "
-                          "box is not told in the balance");
     }
     tyn_balance_params params;
     tyn_settings_params(job->settings, &tyn_pass_balance, &params);

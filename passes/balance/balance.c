@@ -14,15 +14,16 @@ static const tyn_kernel kernels[] = {
     TYN_KERNEL(balance_lights),
 };
 
-// Parts of suns, and as many lamps and VPLs as there may be.
-static uint32_t num_followed(const tyn_balance_params *p)
+// Parts of suns and of the sky, and as many lamps and VPLs as there may be.
+static uint32_t num_followed(const tyn_balance_params *p, bool sky)
 {
-    return p->num_suns * BALANCE_SUN_PARTS + TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX;
+    return p->num_suns * BALANCE_SUN_PARTS + (sky ? BALANCE_SKY_PARTS : 0) + TYN_RADIAL_LAMPS_MAX +
+           TYN_RADIAL_VPLS_MAX;
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params) * sizeof(struct balance_light));
+    tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params, true) * sizeof(struct balance_light));
     tyn_build_buffer(b, BALANCE_PORT_BALANCE, TYN_BALANCE_BYTES);
     return TYN_OK;
 }
@@ -42,10 +43,13 @@ static void record(tyn_recorder *r, const void *params)
         .emitters = tyn_rec_has(r, BALANCE_PORT_EMITTERS),
     };
     if (tyn_rec_has(r, BALANCE_PORT_SURFACES)) {
-        args.num_followed = num_followed(p);
+        args.sky = tyn_rec_has(r, BALANCE_PORT_DIRECTIONS);
+        args.num_followed = num_followed(p, args.sky);
         struct balance_lights_args lights = {
             .num_suns = p->num_suns,
             .locals = tyn_rec_has(r, BALANCE_PORT_RADIALS),
+            .sky_parts = args.sky ? BALANCE_SKY_PARTS : 0,
+            .channels = p->channels,
         };
         memcpy(&lights.lo, p->box[0], sizeof lights.lo);
         memcpy(&lights.hi, p->box[1], sizeof lights.hi);

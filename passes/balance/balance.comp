@@ -94,7 +94,7 @@ void write_scales()
 }
 
 // With surfaces: what lights send out, and where it ends that was not scattered, was found by following it. `cells`:
-// absorbed, emitted, leak, lost by the lights; `sky` enters the medium's box.
+// absorbed, emitted, leak, lost by the lights; `sky` enters the medium's box, if it was not followed.
 void among_surfaces(uint ch, vec4 cells_sum, float on_walls, float sky)
 {
     balance_light all = balance_light(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
@@ -160,7 +160,7 @@ void main()
         entering += e * dot(faces, abs(ordinates.list[n].direction));
     }
     if (args.num_followed > 0) {
-        among_surfaces(ch, sums[0], wall_sums[0].x, entering);
+        among_surfaces(ch, sums[0], wall_sums[0].x, args.sky == 1u ? 0.0 : entering);
         return;
     }
     for (uint sun = 0; sun < args.num_suns; sun++) {

@@ -25,6 +25,8 @@ typedef struct tyn_balance_params {
     X(BALANCE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
         "struct env_block: its mean without suns enters at the box"), \
     X(BALANCE, ORDINATES, ordinates, OPTIONAL, BUFFER, "struct ordinates_block"), \
+    X(BALANCE, DIRECTIONS, directions, OPTIONAL, BUFFER, \
+        "struct ordinates_block: of all light of a sky that surfaces hide"), \
     X(BALANCE, WALL_POWER, wall_power, OPTIONAL, BUFFER, "of lattice"), \
     X(BALANCE, LAMP_POWER, lamp_power, OPTIONAL, BUFFER, "of lattice_lamps"), \
     X(BALANCE, WALL_LIGHT_POWER, wall_light_power, OPTIONAL, BUFFER, "of wall_light"), \

@@ -13,6 +13,7 @@ struct balance_args {
     tyn_uint wall_light;   // 1: walls have light of these
     tyn_uint emitters;     // 1: there are surfaces that emit
     tyn_uint num_followed; // groups of balance_lights; 0: there are none
+    tyn_uint sky;          // 1: the sky is one of them
 };
 
 struct balance_lights_args {
@@ -20,10 +21,12 @@ struct balance_lights_args {
     tyn_uint num_suns;
     tyn_vec3 hi;
     tyn_uint locals; // 1: there are lamps or VPLs
+    tyn_uint sky_parts;
+    tyn_uint channels; // of the cells
 };
-TYN_ASSERT_SIZE(balance_lights_args, 32);
+TYN_ASSERT_SIZE(balance_lights_args, 40);
 
-// Of one part of a sun, of one lamp or VPL: W.
+// Of one part of a sun or of the sky, of one lamp or VPL: W.
 struct balance_light {
     tyn_vec3 entering;
     tyn_vec3 emitted;
@@ -34,5 +37,6 @@ TYN_ASSERT_SIZE(balance_light, 48);
 
 #define BALANCE_GROUP 256
 #define BALANCE_SUN_PARTS 16 // groups that share the rays of a sun
+#define BALANCE_SKY_PARTS 64 // and of the sky
 
 #endif

@@ -1,5 +1,6 @@
-// balance_lights.comp -- where the light of suns, lamps and virtual point lights (VPLs) ends its first flight. One
-// workgroup per light, suns first; rays, and the depths of the beams.
+// balance_lights.comp -- where the light of suns, the sky, lamps and virtual point lights (VPLs) ends its first flight.
+// A workgroup per light, some for each sun and for the sky, in this order; rays, the depths of the beams, and of the sky's
+// light those of the cells on its way.
 //
 // This knows nothing of shadow maps, of the cells' first collisions and of what VPLs were made from: that
 // the sums agree is a check of these.
@@ -8,6 +9,8 @@
 #include "shaders/common/scene_args.h"
 #include "balance_args.h"
 #include "shaders/surfaces/surface_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/lattice/lattice.glsl"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 1
 #define BEAMS_STORAGE
@@ -27,13 +30,16 @@ layout(local_size_x = BALANCE_GROUP) in;
 TYN_ARGS(balance_lights_args args);
 TYN_READ(16, lights, light_block lights[]);
 TYN_WRITE(17, found, balance_light found[]);
+TYN_READ(18, directions, ordinates_block directions);
+layout(binding = 19) uniform sampler3D cells;
 #include "shaders/surfaces/surface_trace.glsl"
 #include "shaders/surfaces/surface_faces.glsl"
 
-const uint SUN_RAYS = 160u, LAMP_RAYS = 96u, VPL_RAYS = 24u; // squared: of a sun for each face
+const uint SUN_RAYS = 160u, LAMP_RAYS = 96u, VPL_RAYS = 24u, SKY_RAYS = 16u; // squared: of a sun for each face
+const uint SUN = 0u, SKY = 1u, LAMP = 2u, VPL = 3u;
 
 shared vec3 sums[BALANCE_GROUP];
-vec3 kept = vec3(0.0), escaped = vec3(0.0); // W
+vec3 sent = vec3(0.0), kept = vec3(0.0), escaped = vec3(0.0); // W
 
 vec3 albedo_at(surface_hit hit)
 {
@@ -64,24 +70,53 @@ bool leaves(surface_point p, vec3 normal, inout rng_state rng)
     return !surface_trace_world(ray, true, hit) && span.y <= max(span.x, 0.0) + rounding;
 }
 
-// Follows the power of a ray of light n (a sun; of the others the number in `radials`) from `origin` (M).
-void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power, inout rng_state rng)
+// What the medium leaves of light on its way from `start` to `end` along d (M): cells at steps of half their width.
+vec3 cells_leave(vec3 origin, vec3 d, float start, float end)
+{
+    ivec3 dims = textureSize(cells, 0) / ivec3(1, 1, args.channels);
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    uint steps = uint(clamp(ceil(2.0 * (end - start) / box.dx), 1.0, 4096.0));
+    float step = (end - start) / float(steps);
+    vec3 tau = vec3(0.0);
+    for (uint k = 0u; k < steps; k++) {
+        ivec3 c = ivec3(floor(lattice_from_m(box, origin + (start + (float(k) + 0.5) * step) * d)));
+        c = clamp(c, ivec3(0), dims - 1);
+        for (int ch = 0; ch < 3; ch++) {
+            vec4 cell = texelFetch(cells, c + ivec3(0, 0, args.channels == 1u ? 0 : ch * dims.z), 0);
+            tau[ch] += step * (cell.x + cell.y);
+        }
+    }
+    return exp(-tau);
+}
+
+// What the medium leaves of the light of a ray between `start` and `end`, in its box; n: see follow.
+vec3 left_of(uint n, uint kind, vec3 origin, vec3 d, float start, float end)
+{
+    if (kind == SKY) {
+        return cells_leave(origin, d, start, end);
+    }
+    beam_tau tau;
+    if (kind == SUN) {
+        tau = beam_depth(n, origin + end * d);
+    } else {
+        vec3 away = origin + end * d - radials[n].light.position;
+        tau = radial_tau(radial_place_of(n, away, length(away)));
+    }
+    return exp(-(tau.a + tau.p));
+}
+
+// Follows the power of a ray of light n (a sun; of lamps and VPLs the number in `radials`) from `origin` (M).
+void follow(uint n, uint kind, vec3 origin, vec3 d, vec3 power, inout rng_state rng)
 {
     surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
     surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
                                        surface_turn(surfaces.to_world, d), SURFACE_NONE);
     bool met = surface_trace_world(ray, false, hit);
     vec2 span = ray_box(origin, ray_inverse(d), vec3(0.0), medium.extent);
-    float end = min(hit.t, span.y);
-    if (end > max(span.x, 0.0)) { // through the medium's box
-        beam_tau tau;
-        if (sun) {
-            tau = beam_depth(n, origin + end * d);
-        } else {
-            vec3 away = origin + end * d - radials[n].light.position;
-            tau = radial_tau(radial_place_of(n, away, length(away)));
-        }
-        power *= exp(-(tau.a + tau.p));
+    float start = max(span.x, 0.0), end = min(hit.t, span.y);
+    sent += power;
+    if (end > start) { // through the medium's box
+        power *= left_of(n, kind, origin, d, start, end);
     }
     if (!met) {
         escaped += power;
@@ -89,7 +124,7 @@ void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power, inout 
     }
     vec3 albedo = albedo_at(hit);
     kept += power * (1.0 - albedo);
-    if (sun || lamp) { // what VPLs do not carry: it leaves, or it is missing from the sum
+    if (kind != VPL) { // what VPLs do not carry: it leaves, or it is missing from the sum
         surface_point p = surface_point_at(hit.triangle, hit.barycentric);
         vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
         vec3 world = ray.origin + hit.t * ray.direction;
@@ -105,23 +140,40 @@ vec2 place_in(uint k, uint n, inout rng_state rng)
     return (vec2(k % n, k / n) + rng_vec2(rng_next(rng).xy)) / float(n);
 }
 
-// The rays of its part: a CPU device ends all loops of a thread after 65535 turns in total, without a word.
-void follow_sun(uint n, uint part)
+// Parallel light `irradiance` along d that enters the box around everything: the rays first, first + stride, ... of `rays`
+// squared for each face. A CPU device ends all loops of a thread after 65535 turns in total, without a word.
+void follow_parallel(uint n, uint kind, vec3 irradiance, vec3 d, uint rays, uint first, uint stride)
 {
-    vec3 d = lights[n].direction, size = args.hi - args.lo;
+    vec3 size = args.hi - args.lo;
     for (uint axis = 0u; axis < 3u; axis++) {
         uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
-        float across = size[u] * size[v] * abs(d[axis]) / float(SUN_RAYS * SUN_RAYS);
-        uint first = part * BALANCE_GROUP + gl_LocalInvocationIndex;
-        for (uint k = first; across > 0.0 && k < SUN_RAYS * SUN_RAYS; k += BALANCE_SUN_PARTS * BALANCE_GROUP) {
-            rng_state rng = rng_start(n, k, axis);
-            vec2 at = place_in(k, SUN_RAYS, rng);
+        float across = size[u] * size[v] * abs(d[axis]) / float(rays * rays);
+        for (uint k = first; across > 0.0 && k < rays * rays; k += stride) {
+            rng_state rng = rng_start(n, k, axis + 4u * kind);
+            vec2 at = place_in(k, rays, rng);
             vec3 p = args.lo;
             p[axis] = d[axis] > 0.0 ? args.lo[axis] : args.hi[axis];
             p[u] += at.x * size[u];
             p[v] += at.y * size[v];
-            follow(n, true, false, p, d, across * lights[n].color, rng);
+            follow(n, kind, p, d, across * irradiance, rng);
         }
+    }
+}
+
+void follow_sun(uint n, uint part)
+{
+    follow_parallel(n, SUN, lights[n].color, lights[n].direction, SUN_RAYS,
+                    part * BALANCE_GROUP + gl_LocalInvocationIndex, BALANCE_SUN_PARTS * BALANCE_GROUP);
+}
+
+// Every so many directions, a ray of a face each thread. Mean cosine: of a region about its direction.
+void follow_sky(uint part)
+{
+    uint count = min(directions.count, uint(TYN_ORDINATES_MAX));
+    for (uint n = part; n < count; n += args.sky_parts) {
+        vec3 irradiance = directions.list[n].mean_cosine * max(directions.list[n].irradiance, vec3(0.0));
+        follow_parallel(n, SKY, irradiance, directions.list[n].direction, SKY_RAYS, gl_LocalInvocationIndex,
+                        BALANCE_GROUP);
     }
 }
 
@@ -145,7 +197,7 @@ void follow_local(uint n)
         vec3 d = z * axis + r * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
         vec3 power = light.color * (lamp ? solid_angle * light_lobe(light, dot(d, axis))
                                              : 3.14159265 / float(rays * rays));
-        follow(n, false, lamp, light.position + lift * axis, d, power, rng);
+        follow(n, lamp ? LAMP : VPL, light.position + lift * axis, d, power, rng);
     }
 }
 
@@ -166,24 +218,21 @@ vec3 total_of(vec3 v)
 
 void main()
 {
-    uint sun_groups = args.num_suns * BALANCE_SUN_PARTS, group = gl_WorkGroupID.x;
-    bool sun = group < sun_groups, shines = sun || (args.locals != 0u && group - sun_groups < radial_count);
-    vec3 given = vec3(0.0);
-    bool lamp = false;
-    if (sun) {
-        uint light = group / BALANCE_SUN_PARTS, part = group % BALANCE_SUN_PARTS;
-        vec3 size = args.hi - args.lo;
-        given = lights[light].color * dot(size.yzx * size.zxy, abs(lights[light].direction)) / float(BALANCE_SUN_PARTS);
-        follow_sun(light, part);
-    } else if (shines) {
-        uint n = group - sun_groups;
-        light_block l = radials[n].light;
-        lamp = n < radial_num_lamps;
-        given = l.color * light_lobe_integral(l);
+    uint suns = args.num_suns * BALANCE_SUN_PARTS, group = gl_WorkGroupID.x, n = group - suns - args.sky_parts;
+    vec3 entering = vec3(0.0), emitted = vec3(0.0);
+    if (group < suns) {
+        follow_sun(group / BALANCE_SUN_PARTS, group % BALANCE_SUN_PARTS);
+        entering = total_of(sent);
+    } else if (group < suns + args.sky_parts) {
+        follow_sky(group - suns);
+        entering = total_of(sent);
+    } else if (args.locals != 0u && n < radial_count) {
         follow_local(n);
+        light_block l = radials[n].light;
+        emitted = n < radial_num_lamps ? l.color * light_lobe_integral(l) : vec3(0.0);
     }
     vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);
     if (gl_LocalInvocationIndex == 0u) {
-        found[group] = balance_light(sun ? given : vec3(0.0), lamp ? given : vec3(0.0), all_kept, all_escaped);
+        found[group] = balance_light(entering, emitted, all_kept, all_escaped);
     }
 }

@@ -62,7 +62,8 @@ uint triangle_of(uint block, float at)
 // Of direction k, W/m^2 across the surface; `cosine` of light and normal.
 vec3 sky_from(uint k, shadow_surface s, out float cosine)
 {
-    vec3 towards = -ordinates.list[k].direction, light = max(ordinates.list[k].irradiance, vec3(0.0));
+    vec3 towards = -ordinates.list[k].direction; // mean cosine: of the region about it
+    vec3 light = ordinates.list[k].mean_cosine * max(ordinates.list[k].irradiance, vec3(0.0));
     cosine = dot(s.n, towards);
     float share = abs(cosine);
     if (share > 0.0) {

@@ -2,7 +2,7 @@
 //
 // A thread a patch. Light that a cell at the box's face sends out is the net flux there, on the line through the
 // fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Where surfaces close by send light
-// back (walls_beyond) what leaves is more than the net flux by that: their albedo times phi / 4 + F.n / 2. Its directions are
+// back (walls_beyond) what leaves is more than the net flux by that: their albedo times their share of phi / 4 + F.n / 2. Its directions are
 // those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,6 +11,7 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/light/env_args.h"
 #include "shaders/lattice/lattice.glsl"
+#include "shaders/lattice/lattice_sweep.glsl"
 #include "shaders/walls/walls_links.glsl"
 
 layout(local_size_x = 32) in;
@@ -30,6 +31,21 @@ const float PI = 3.14159265358979;
 bool has(uint feature)
 {
     return (shade_features & feature) != 0u;
+}
+
+// What of the light that leaves cell `index` outwards comes back from surfaces close by: those of the links that are cut
+// there, but not by walls of the lattice (`inner`).
+vec3 returns_of(int index, uint inner, ivec3 outwards)
+{
+    uint links = around_links[index] & ~inner;
+    float all = 0.0, cut = 0.0;
+    for (uint link = 0u; link < 14u; link++) {
+        float share = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        share = dot(vec3(lattice_step(link)), vec3(outwards)) > 0.0 ? share : 0.0;
+        all += share;
+        cut += (links >> link & 1u) != 0u ? share : 0.0;
+    }
+    return cut / all * around_cells[index].albedo;
 }
 
 void main()
@@ -68,10 +84,7 @@ void main()
             uint back = walls_link(-outwards);
             behind = (links >> back & 1u) != 0u ? c : behind;
             bool open = (links >> link & 1u) == 0u, lit = false;
-            vec3 returns = vec3(0.0); // of what leaves
-            if (has(SHADE_AROUND) && (around_links[index] >> link & 1u) != 0u) {
-                returns = around_cells[index].albedo;
-            }
+            vec3 returns = has(SHADE_AROUND) ? returns_of(index, links, outwards) : vec3(0.0);
             for (int ch = 0; ch < channels && open; ch++) {
                 ivec3 shift = ivec3(0, 0, ch * dims.z);
                 vec4 m = texelFetch(moments_tex, c + shift, 0), inner = texelFetch(moments_tex, behind + shift, 0);

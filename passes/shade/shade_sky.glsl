@@ -32,7 +32,8 @@ vec3[SHADE_MANY] shade_sky(shade_point p[SHADE_MANY], vec4 part[SHADE_MANY], uin
     uint count = min(ordinates.count, uint(TYN_ORDINATES_MAX)); // here these are the directions
     for (uint k = first; k < count; k += stride) {
         uint n = tyn_sky_ordinate(k, ordinates.num_fixed, args.sky_fan);
-        vec3 light = max(ordinates.list[k].irradiance, vec3(0.0)), towards = -ordinates.list[k].direction;
+        vec3 towards = -ordinates.list[k].direction; // mean cosine: of the region about it
+        vec3 light = ordinates.list[k].mean_cosine * max(ordinates.list[k].irradiance, vec3(0.0));
         shadow_light map = sky_map_of(k);
         [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
             float share = shade_cosine(p[i], towards);

@@ -56,7 +56,7 @@ void main()
         if (share * across > 0.0) {
             beam_tau tau = columns_tau(n, uvec3(c), args.dims);
             vec3 light = whole == 1u ? o.irradiance : sky_whole_irradiance(o);
-            sum += share * across * light * exp(-(tau.a + tau.p));
+            sum += share * across * o.mean_cosine * light * exp(-(tau.a + tau.p));
         }
     }
     float area = wall_cells[i].area;

@@ -30,8 +30,15 @@ vec3 place_in_cell(uint k)
     return 0.25 * (1.0 - 2.0 * vec3(k == 2u || k == 3u, k == 1u || k == 3u, k == 1u || k == 2u));
 }
 
-// Does the link's tube from the cell at `centre` (M, m) end on surfaces? `albedo`: of them.
-bool ends_beyond(vec3 centre, vec3 step, float dx, out vec3 albedo)
+// What of a diffuse surface's light of the normal `n` goes back through the faces that a step leaves the lattice by (`outwards`):
+// (1 + cos) / 2 to the half space behind a face, the mean of the faces.
+float share_back(vec3 n, vec3 outwards)
+{
+    return 0.5 - 0.5 * dot(n, outwards) / dot(outwards, outwards);
+}
+
+// Does the link's tube from the cell at `centre` (M, m) end on surfaces? `albedo`: what they send back into the lattice.
+bool ends_beyond(vec3 centre, vec3 step, vec3 outwards, float dx, out vec3 albedo)
 {
     vec3 d = normalize(step), sum = vec3(0.0);
     float length = (0.5 * dx + args.reach) * length(step);
@@ -42,7 +49,9 @@ bool ends_beyond(vec3 centre, vec3 step, float dx, out vec3 albedo)
                                            surface_turn(surfaces.to_world, d), SURFACE_NONE);
         if (surface_trace_world(ray, false, hit)) {
             uvec4 t = surface_triangle_at(hit.triangle);
-            sum += surface_reflected(surface_material_at(t.w), surface_colour_over(t, hit.barycentric, dx * dx));
+            vec3 n = surface_point_at(hit.triangle, hit.barycentric).normal;
+            sum += share_back(dot(n, d) > 0.0 ? -n : n, outwards) *
+                   surface_reflected(surface_material_at(t.w), surface_colour_over(t, hit.barycentric, dx * dx));
             hits++;
         }
     }
@@ -69,9 +78,10 @@ void main()
         float area = cell.area;
         for (uint link = 0u; link < 14u; link++) {
             ivec3 step = lattice_step(link), to = ivec3(c) + step;
-            bool leaves = any(lessThan(to, ivec3(0))) || any(greaterThanEqual(to, ivec3(args.dims)));
+            vec3 outwards = vec3(greaterThanEqual(to, ivec3(args.dims))) - vec3(lessThan(to, ivec3(0)));
+            bool leaves = any(notEqual(outwards, vec3(0.0)));
             vec3 albedo;
-            if (leaves && (cut >> link & 1u) == 0u && ends_beyond(centre, vec3(step), box.dx, albedo)) {
+            if (leaves && (cut >> link & 1u) == 0u && ends_beyond(centre, vec3(step), outwards, box.dx, albedo)) {
                 float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
                 cut |= 1u << link;
                 area += a;

@@ -22,7 +22,7 @@ static const struct wall_case {
     const char *name;
     double error, bias; // of the picture, at most
 } cases[] = {
-    {"room", 0.1, 0.009},           {"fog-hall", 0.09, 0.03}, {"lantern", 0.05, 0.03},
+    {"room", 0.1, 0.009},           {"fog-hall", 0.09, 0.03}, {"lantern", 0.05, 0.01},
     {"cornell-smoke", 0.13, 0.015}, {"vpl-cave", 0.24, 0.03}, {"many-lights", 0.05, 0.035},
 };
 enum { NUM_CASES = sizeof cases / sizeof cases[0] };
@@ -80,7 +80,10 @@ static void pictures(void **state)
         print_message("%-14s error %5.2f %% (rel_l1 %5.2f, noise %4.2f), bias %+6.2f %%\n", k->name,
                       100 * e.reported, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
         good = within(e.reported, k->error, NULL, "%s, error", k->name) && good;
-        good = within(fabs(e.bias), k->bias, NULL, "%s, bias", k->name) && good;
+        const bool noise = fabs(e.bias) < 0.2 * e.noise;
+        good = within(fabs(e.bias), k->bias, noise ? "the reference's mean is no surer" : NULL,
+                      "%s, bias", k->name) &&
+               good;
         picture_free(&blocks);
         picture_free(&p);
         picture_free(&reference);

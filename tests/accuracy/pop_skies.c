@@ -51,7 +51,10 @@ static bool compare(const picture *p, const picture *reference, double error, do
     printf("%s: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n", name, 100 * e.rel_l1, 100 * e.noise,
            100 * e.bias);
     const bool near = within(e.reported, error, NULL, "%s, error", name);
-    return within(fabs(e.bias), bias, NULL, "%s, bias", name) && near;
+    const bool noise = fabs(e.bias) < 0.2 * e.noise;
+    return within(fabs(e.bias), bias, noise ? "the reference's mean is no surer" : NULL, "%s, bias",
+                  name) &&
+           near;
 }
 
 // ---- what changes nothing -------------------------------------------------------------------------
@@ -225,9 +228,9 @@ static void against_path(void **state)
         {"tray, blue", TRAY, BLUE, 0.6f, 0.03, 0.025, NULL},
         {"tray, window", TRAY, WINDOW, 0.6f, 0.08, 0.02, NULL},
         {"tray, even", TRAY, EVEN, 0.6f, 0.012, 0.01, NULL},
-        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.001, NULL},
+        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.0025, NULL},
         {"tray around the fog, window", AROUND, WINDOW, 0.6f, 0.03, 0.007, NULL},
-        {"tray around the fog, even", AROUND, EVEN, 0.6f, 0.004, 0.002, NULL},
+        {"tray around the fog, even", AROUND, EVEN, 0.6f, 0.004, 0.0015, NULL},
         {"room, blue", ROOM, BLUE, 0.5f, 0.12, 0.05, NULL},
         {"room, window", ROOM, WINDOW, 0.5f, 0.09, 0.006, NULL},
         {"room, even", ROOM, EVEN, 0.5f, 0.1, 0.03, NULL},
