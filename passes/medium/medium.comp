@@ -5,12 +5,13 @@
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
+#define MEDIUM_GROUP 4
 #define COLORS 6
 #include "shaders/phase/phase.glsl"
 #include "medium_shapes.glsl"
 #include "medium_args.h"
 
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = MEDIUM_GROUP, local_size_y = MEDIUM_GROUP, local_size_z = MEDIUM_GROUP) in;
 #ifdef TYN_DENSITY
 layout(set = 0, binding = 3, r32f) writeonly uniform image3D density_image;
 #else
@@ -27,6 +28,7 @@ float mean_of(vec3 v)
 
 void main()
 {
+    shapes_find();
     uvec3 voxel = gl_GlobalInvocationID;
     if (any(greaterThanEqual(voxel, medium.size))) {
         return;
@@ -34,13 +36,13 @@ void main()
     vec3 p = (vec3(voxel) + 0.5) * medium.voxel;
 #ifdef TYN_DENSITY
     float density = 0.0;
-    for (uint i = 0u; i < medium.num_shapes; i++) {
+    for (uint i = shapes_next(0u); i < medium.num_shapes; i = shapes_next(i + 1u)) {
         density += shape_scale(shapes[i]) * shape_mean(shapes[i], p, int(args.samples));
     }
     imageStore(density_image, ivec3(voxel), vec4(density));
 #else
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), weighted = vec3(0.0);
-    for (uint i = 0u; i < medium.num_shapes; i++) {
+    for (uint i = shapes_next(0u); i < medium.num_shapes; i = shapes_next(i + 1u)) {
 #ifdef TYN_COLORS
         mat3 means = shape_means(shapes[i], p, int(args.samples));
 #else

@@ -65,6 +65,42 @@ bool shape_contains(shape_block s, vec3 local, vec3 local_half)
                                         : dot(farthest, farthest) <= 0.25;
 }
 
+#ifdef MEDIUM_GROUP
+shared uint shapes_near[TYN_SHAPES_MAX / 32]; // a bit each: it may touch voxels of the workgroup
+
+// All threads of the workgroup, MEDIUM_GROUP^3, find its shapes; what is far from it costs its voxels nothing.
+void shapes_find()
+{
+    uint lane = gl_LocalInvocationIndex;
+    if (lane < TYN_SHAPES_MAX / 32) {
+        shapes_near[lane] = 0u;
+    }
+    barrier();
+    vec3 half_box = 0.5 * float(MEDIUM_GROUP) * medium.voxel;
+    vec3 centre = (2.0 * vec3(gl_WorkGroupID) + 1.0) * half_box;
+    for (uint i = lane; i < medium.num_shapes; i += MEDIUM_GROUP * MEDIUM_GROUP * MEDIUM_GROUP) {
+        // Rounding must not hide a shape that a voxel touches.
+        vec3 local_half = (1.0 + 1e-5) * shape_local_half(shapes[i], half_box) + 1e-5;
+        if (!shape_misses(shapes[i], shape_local(shapes[i], centre), local_half)) {
+            atomicOr(shapes_near[i / 32u], 1u << i % 32u);
+        }
+    }
+    barrier();
+}
+
+// The next of them from `first` on, in order; num_shapes: there is none.
+uint shapes_next(uint first)
+{
+    for (uint word = first / 32u; word < TYN_SHAPES_MAX / 32; word++) {
+        uint left = shapes_near[word] & (word == first / 32u ? ~0u << first % 32u : ~0u);
+        if (left != 0u) {
+            return 32u * word + findLSB(left);
+        }
+    }
+    return medium.num_shapes;
+}
+#endif
+
 // Texels of a grid along a voxel, at least 1 and at most `most`.
 int shape_texels(shape_block s, uvec3 size, int most)
 {
@@ -108,20 +144,14 @@ float shape_mean(shape_block s, vec3 p, int samples)
 }
 
 #ifdef TYN_COLORS
+#include "shaders/medium/shape_colors.glsl"
 layout(set = 0, binding = COLORS) uniform sampler3D colors_tex;
-
-bool shape_has_color(shape_block s, uint which)
-{
-    return s.colors[which].size.x > 0u;
-}
 
 // A grid of colours (TYN_COLORS_*) at a local position; outside the shape its edge value.
 vec3 shape_color(shape_block s, uint which, vec3 local)
 {
-    shape_colors c = s.colors[which];
-    vec3 size = vec3(c.size);
-    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(0.0, 0.0, float(c.layer));
-    return c.scale * textureLod(colors_tex, texel / vec3(textureSize(colors_tex, 0)), 0.0).rgb;
+    vec3 texel = shape_colors_texel(s.colors[which], local);
+    return s.colors[which].scale * textureLod(colors_tex, texel / vec3(textureSize(colors_tex, 0)), 0.0).rgb;
 }
 
 // Means over the voxel around p, 0 outside the shape: sigma_s, sigma_a, emission.

@@ -6,6 +6,7 @@
 #ifndef TYN_PATH_MEDIA_GLSL
 #define TYN_PATH_MEDIA_GLSL
 #include "shaders/medium/majorant.glsl"
+#include "shaders/medium/shape_colors.glsl"
 #include "shaders/phase/phase.glsl"
 
 struct media_point {
@@ -63,17 +64,11 @@ float shape_density(shape_block shape, vec3 local)
 }
 
 // A grid of colours of the shape, likewise; TYN_COLORS_*.
-bool shape_has_color(shape_block shape, uint which)
-{
-    return shape.colors[which].size.x > 0u;
-}
 
 vec3 shape_color(shape_block shape, uint which, vec3 local)
 {
-    shape_colors c = shape.colors[which];
-    vec3 size = vec3(c.size);
-    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(0.0, 0.0, float(c.layer));
-    return c.scale * textureLod(colors, texel * path_colors_texel, 0.0).rgb;
+    vec3 texel = shape_colors_texel(shape.colors[which], local);
+    return shape.colors[which].scale * textureLod(colors, texel * path_colors_texel, 0.0).rgb;
 }
 
 bool shape_is_sphere(shape_block shape)

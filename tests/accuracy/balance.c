@@ -48,7 +48,7 @@ static const struct sample_scene {
 } scenes[] = {
     // Among surfaces light is followed by rays, which the cells' walls are compared with.
     {"room", 4, false, {[LAMPS] = 0.0035, [VPLS] = 0.005, [WALLS] = 0.003}, 0.0075, .cut = discs},
-    {"fog-hall", 4, false, {[SUNS] = 0.012, [VPLS] = 0.02, [WALLS] = 1}, .few = few_cells},
+    {"fog-hall", 4, false, {[SUNS] = 0.012, [VPLS] = 0.02, [WALLS] = 1}, 0.006, .few = few_cells},
     {"lantern", 4, false, {[LAMPS] = 0.06, [VPLS] = 0.16}, 0.002},
     {"cornell-smoke",
      8,
