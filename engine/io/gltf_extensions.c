@@ -31,6 +31,13 @@ static bool is_understood(const char *name)
     return false;
 }
 
+// Materials have what is understood of them beside their extensions: without one they look plainer, and that is warned
+// of.
+static bool is_of_materials(const char *name)
+{
+    return strncmp(name, "KHR_materials_", strlen("KHR_materials_")) == 0;
+}
+
 tyn_result tyn_gltf_check_required(const json_doc *doc)
 {
     cJSON *array;
@@ -48,7 +55,7 @@ tyn_result tyn_gltf_check_required(const json_doc *doc)
                                       packed[i].packs, packed[i].command);
             }
         }
-        if (!is_understood(name)) {
+        if (!is_understood(name) && !is_of_materials(name)) {
             char known[512] = "";
             size_t used = 0;
             for (size_t i = 0; i < sizeof understood / sizeof *understood; i++) {

@@ -256,6 +256,21 @@ static void extensions(void **state)
         warnings_with(&s, "materials[0].extensions.EXT_b and 1 more: this extension is not"), 1);
     assert_int_equal(warnings_with(&s, "nodes[0].extensions.EXT_c and 2 more"), 1);
     tyn_scene_finish(&s);
+
+    // What a material has beside its extensions is enough for a picture, though the file requires them.
+    gltf_file g = {0};
+    gltf_file_array(&g, 5126, "VEC3", 3, triangle, sizeof triangle);
+    s = load_at(
+        gltf_file_put(&g, "required",
+                      "'extensionsUsed': ['KHR_materials_unlit'], 'extensionsRequired': "
+                      "['KHR_materials_unlit', 'KHR_materials_variants'], 'materials': "
+                      "[{'extensions': {'KHR_materials_unlit': {}}, 'pbrMetallicRoughness': "
+                      "{'metallicFactor': 0}}], 'nodes': [{'mesh': 0}], 'meshes': "
+                      "[{'primitives': [{'attributes': {'POSITION': 0}, 'material': 0}]}]"),
+        NULL);
+    assert_int_equal(s.surfaces.num_triangles, 1);
+    assert_int_equal(warnings_with(&s, "KHR_materials_unlit: this extension is not understood"), 1);
+    tyn_scene_finish(&s);
 }
 
 static void pictures(void **state)
