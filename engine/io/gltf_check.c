@@ -217,7 +217,10 @@ static tyn_result check_texture_info(const checker *c, const cJSON *parent, cons
 
 static tyn_result check_material(const checker *c, const cJSON *material)
 {
-    cJSON *pbr;
+    cJSON *pbr, *extensions, *gloss;
+    TYN_TRY(tyn_json_object(c->doc, material, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_materials_pbrSpecularGlossiness", &gloss));
+    TYN_TRY(check_texture_info(c, gloss, "diffuseTexture"));
     TYN_TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
     TYN_TRY(check_texture_info(c, pbr, "baseColorTexture"));
     TYN_TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));

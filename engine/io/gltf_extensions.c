@@ -6,7 +6,7 @@
 static const char *const understood[] = {
     "TYN_participating_media", "TYN_environment_map",   "KHR_lights_punctual",
     "KHR_mesh_quantization",   "KHR_texture_transform", "KHR_materials_emissive_strength",
-    "EXT_mesh_gpu_instancing",
+    "EXT_mesh_gpu_instancing", "KHR_materials_unlit",   "KHR_materials_pbrSpecularGlossiness",
 };
 
 // Those that pack what others leave plain, and the command that unpacks them (of npm's @gltf-transform/cli).

@@ -1,6 +1,6 @@
 // gltf_material.c -- materials of a glTF file as diffuse surfaces.
 //
-// Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic).
+// Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic); of specular-glossiness diffuse.
 #include "io/gltf_material.h"
 #include <float.h>
 #include <math.h>
@@ -10,6 +10,8 @@
 #include "base/hash.h"
 
 // ---- open, close ------------------------------------------------------------------------------
+
+static const char SPECULAR_GLOSSINESS[] = "KHR_materials_pbrSpecularGlossiness";
 
 tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn_scene *scene)
 {
@@ -43,6 +45,8 @@ void tyn_gltf_materials_close(gltf_materials *m)
         [LACK_METAL_TEXTURE] = "of metallicRoughnessTexture the mean metalness counts",
         [LACK_NORMAL_TEXTURE] = "normalTexture is not read",
         [LACK_ALPHA] = "it is opaque: of alphaMode only MASK is read, not BLEND",
+        [LACK_UNLIT] = "KHR_materials_unlit: it is lit as others are",
+        [LACK_GLOSS] = "of KHR_materials_pbrSpecularGlossiness the diffuse part is kept",
     };
     for (int i = 0; i < NUM_LACKS; i++) {
         const uint32_t others = m->lacks[i].count - 1;
@@ -138,21 +142,66 @@ static tyn_result read_factors(const json_doc *doc, const cJSON *json, double fa
     return TYN_OK;
 }
 
+// What a material has by an extension in place of the metallic-roughness model: NULL, or that object.
+static tyn_result read_extension(const json_doc *doc, const cJSON *json, const char *name,
+                                 cJSON **out)
+{
+    cJSON *extensions;
+    TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
+    return tyn_json_object(doc, extensions, name, out);
+}
+
+// The diffuse texture's info, or NULL; the factor is put in place of the base colour's where it is of specular-glossiness.
+static tyn_result read_diffuse(const json_doc *doc, const cJSON *json, double factor[4],
+                               cJSON **info)
+{
+    cJSON *gloss, *pbr;
+    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    if (gloss) {
+        if (factor) {
+            factor[0] = factor[1] = factor[2] = factor[3] = 1;
+            TYN_TRY(
+                tyn_json_numbers(doc, gloss, "diffuseFactor", 4, 0, 1, "between 0 and 1", factor));
+        }
+        return tyn_json_object(doc, gloss, "diffuseTexture", info);
+    }
+    TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+    return tyn_json_object(doc, pbr, "baseColorTexture", info);
+}
+
+// How much of a material is metal, which reflects nothing diffusely.
+static tyn_result read_metallic(gltf_materials *m, int64_t index, const cJSON *json, double *out)
+{
+    const json_doc *doc = m->textures.data->doc;
+    double mean[4];
+    cJSON *pbr, *metal, *unlit, *gloss;
+    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    TYN_TRY(read_extension(doc, json, "KHR_materials_unlit", &unlit));
+    if (gloss || unlit) {
+        lack(m, index, gloss ? LACK_GLOSS : LACK_UNLIT);
+        *out = 0;
+        return TYN_OK;
+    }
+    *out = 1;
+    TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+    TYN_TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", out));
+    TYN_TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
+    if (metal && *out > 0) { // metalness is in the blue channel, linear
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
+        *out *= mean[2];
+        lack(m, index, LACK_METAL_TEXTURE);
+    }
+    return TYN_OK;
+}
+
 static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *json,
                               gltf_material *out, double factor[4])
 {
     const json_doc *doc = m->textures.data->doc;
-    double metallic = 1, mean[4];
-    cJSON *pbr, *info, *metal;
-    TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
-    TYN_TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
-    TYN_TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
-    TYN_TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
-    if (metal && metallic > 0) { // metalness is in the blue channel, linear
-        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
-        metallic *= mean[2];
-        lack(m, index, LACK_METAL_TEXTURE);
-    }
+    double metallic;
+    cJSON *info;
+    TYN_TRY(read_metallic(m, index, json, &metallic));
+    TYN_TRY(read_diffuse(doc, json, NULL, &info));
     if (info) {
         TYN_TRY(read_place(doc, info, &out->color));
         TYN_TRY(tyn_gltf_texture_get(&m->textures, info, &out->surface.texture));
@@ -193,7 +242,7 @@ static tyn_result read_mask(gltf_materials *m, int64_t index, const cJSON *json,
     const json_doc *doc = m->textures.data->doc;
     const char *mode = "OPAQUE";
     double cutoff = 0.5;
-    cJSON *pbr, *info;
+    cJSON *info;
     TYN_TRY(tyn_json_string(doc, json, "alphaMode", &mode));
     TYN_TRY(tyn_json_number(doc, json, "alphaCutoff", 0, 1e30, "a number >= 0", &cutoff));
     if (strcmp(mode, "BLEND") == 0) {
@@ -201,8 +250,7 @@ static tyn_result read_mask(gltf_materials *m, int64_t index, const cJSON *json,
     } else if (strcmp(mode, "MASK") == 0 && cutoff > 0) {
         out->cutoff = cutoff;
         out->opacity = factor[3];
-        TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
-        TYN_TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+        TYN_TRY(read_diffuse(doc, json, NULL, &info));
         return info ? read_picture(m, info, &out->alpha) : TYN_OK;
     } else if (strcmp(mode, "MASK") != 0 && strcmp(mode, "OPAQUE") != 0) {
         return tyn_json_fault(doc, tyn_json_member(json, "alphaMode"),
@@ -239,6 +287,8 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     const cJSON *json = m->list.items[at];
     double factors[TYN_MATERIAL_NUM_FIELDS][4];
     TYN_TRY(read_factors(m->textures.data->doc, json, factors));
+    cJSON *diffuse;
+    TYN_TRY(read_diffuse(m->textures.data->doc, json, factors[TYN_MATERIAL_ALBEDO], &diffuse));
     TYN_TRY(read_mask(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
     TYN_TRY(read_albedo(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
     TYN_TRY(read_emission(m, json, loaded, factors[TYN_MATERIAL_EMISSION]));

@@ -25,6 +25,8 @@ typedef enum gltf_material_lack {
     LACK_METAL_TEXTURE,
     LACK_NORMAL_TEXTURE,
     LACK_ALPHA,
+    LACK_UNLIT,
+    LACK_GLOSS,
     NUM_LACKS
 } gltf_material_lack;
 

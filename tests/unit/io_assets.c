@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf_file.h"
+#include "numbers.h"
 
 static const float triangle[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
@@ -257,19 +258,31 @@ static void extensions(void **state)
     assert_int_equal(warnings_with(&s, "nodes[0].extensions.EXT_c and 2 more"), 1);
     tyn_scene_finish(&s);
 
-    // What a material has beside its extensions is enough for a picture, though the file requires them.
+    // What a material has beside its extensions is enough for a picture, though the file requires them. Unlit ones and
+    // those of specular-glossiness are no metal, whatever the default is.
     gltf_file g = {0};
     gltf_file_array(&g, 5126, "VEC3", 3, triangle, sizeof triangle);
     s = load_at(
         gltf_file_put(&g, "required",
                       "'extensionsUsed': ['KHR_materials_unlit'], 'extensionsRequired': "
-                      "['KHR_materials_unlit', 'KHR_materials_variants'], 'materials': "
-                      "[{'extensions': {'KHR_materials_unlit': {}}, 'pbrMetallicRoughness': "
-                      "{'metallicFactor': 0}}], 'nodes': [{'mesh': 0}], 'meshes': "
-                      "[{'primitives': [{'attributes': {'POSITION': 0}, 'material': 0}]}]"),
+                      "['KHR_materials_unlit', 'KHR_materials_variants', "
+                      "'KHR_materials_pbrSpecularGlossiness', 'KHR_materials_sheen'], 'materials': "
+                      "[{'extensions': {'KHR_materials_unlit': {}, 'KHR_materials_sheen': {}}, "
+                      "'pbrMetallicRoughness': {'baseColorFactor': [0.25, 0.5, 0.75, 1]}}, "
+                      "{'extensions': {'KHR_materials_pbrSpecularGlossiness': {'diffuseFactor': "
+                      "[0.5, 0.25, 0.125, 1]}}}], 'nodes': [{'mesh': 0}], 'meshes': "
+                      "[{'primitives': [{'attributes': {'POSITION': 0}, 'material': 0}, "
+                      "{'attributes': {'POSITION': 0}, 'material': 1}]}]"),
         NULL);
-    assert_int_equal(s.surfaces.num_triangles, 1);
-    assert_int_equal(warnings_with(&s, "KHR_materials_unlit: this extension is not understood"), 1);
+    assert_int_equal(s.surfaces.num_triangles, 2);
+    assert_int_equal(s.surfaces.num_materials, 2);
+    const float albedo[2][3] = {{0.25f, 0.5f, 0.75f}, {0.5f, 0.25f, 0.125f}};
+    for (int k = 0; k < 6; k++) {
+        assert_near(s.surfaces.materials[k / 3].albedo[k % 3], albedo[k / 3][k % 3], 1e-6);
+    }
+    assert_int_equal(warnings_with(&s, "KHR_materials_sheen: this extension is not understood"), 1);
+    assert_int_equal(warnings_with(&s, "KHR_materials_unlit: it is lit as others are"), 1);
+    assert_int_equal(warnings_with(&s, "the diffuse part is kept"), 1);
     tyn_scene_finish(&s);
 }
 
