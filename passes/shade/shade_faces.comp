@@ -89,11 +89,12 @@ void main()
                 ivec3 shift = ivec3(0, 0, ch * dims.z);
                 vec4 m = texelFetch(moments_tex, c + shift, 0), inner = texelFetch(moments_tex, behind + shift, 0);
                 m.yzw += 0.5 * (m.yzw - inner.yzw);
+                float phi = max(m.x + 0.5 * (m.x - inner.x), 0.0);
                 lit = lit || m.x > 0.0;
                 float out_flux = dot(m.yzw, vec3(outwards));
                 vec3 tint = channels == 1 ? args.tint : vec3(ch == 0, ch == 1, ch == 2);
                 float returned = dot(returns, tint) / dot(tint, vec3(1.0));
-                out_flux += returned * max(0.25 * m.x + 0.5 * out_flux, 0.0);
+                out_flux += returned * max(0.25 * phi + 0.5 * out_flux, 0.0);
                 net += out_flux * tint;
                 float sky = has(SHADE_SKY) ? 4.0 * PI * dot(environment.sky, tint) / dot(tint, tint) : 0.0;
                 mean += dot(tint, vec3(1.0)) * vec4(m.x - sky, m.yzw);

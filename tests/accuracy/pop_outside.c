@@ -5,6 +5,7 @@
 #include "path_run.h"
 #include "picture.h"
 #include "solids.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,6 +43,10 @@ static double strip(const picture *p, int from, int to)
     return sum;
 }
 
+static const char returned[] =
+    "what a floor sends back through cut links is told from its cell's mean, not from what leaves "
+    "by each link: 8.1 % of the light beside a dense medium's foot";
+
 static void floors(void **state)
 {
     gpu_test *t = *state;
@@ -56,7 +61,7 @@ static void floors(void **state)
         {"glow, floor through the box", GLOW, -0.13f, 3, 0.03, 0.1},
         {"glow, floor below the box", GLOW, -0.7f, 3, 0.03, 0.15},
         {"dense glow, floor through the box", GLOW, -0.13f, 15, 0.04, 0.08},
-        {"sun", SUN, -0.5f, 8, 0.015, 0},
+        {"sun", SUN, -0.5f, 8, 0.012, 0},
         {"sky", SKY, -0.5f, 3, 0.018, 0},
     };
     path_run runs;
@@ -85,7 +90,13 @@ static void floors(void **state)
             const int from = turned ? SIZE / 2 - widths[k] : SIZE / 2, to = from + widths[k];
             const double off = strip(&p, from, to) / strip(&reference, from, to) - 1;
             printf(" %+.1f %%", 100 * off);
-            good = within(fabs(off), cases[i].strips, NULL, "%s, strips", cases[i].name) && good;
+            const bool dense = cases[i].sigma_s > 10;
+            good = within(fabs(off), dense ? 0.1 : cases[i].strips, NULL, "%s, strips",
+                          cases[i].name) &&
+                   good;
+            good = todo_if(dense && k == 0, fabs(off) <= cases[i].strips, returned,
+                           "%s, strip of %d pixels", cases[i].name, widths[k]) &&
+                   good;
         }
         printf("\n");
         picture_free(&p);

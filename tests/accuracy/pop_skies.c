@@ -228,7 +228,7 @@ static void against_path(void **state)
         {"tray, blue", TRAY, BLUE, 0.6f, 0.03, 0.025, NULL},
         {"tray, window", TRAY, WINDOW, 0.6f, 0.08, 0.02, NULL},
         {"tray, even", TRAY, EVEN, 0.6f, 0.012, 0.01, NULL},
-        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.0025, NULL},
+        {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.004, NULL},
         {"tray around the fog, window", AROUND, WINDOW, 0.6f, 0.03, 0.007, NULL},
         {"tray around the fog, even", AROUND, EVEN, 0.6f, 0.004, 0.0015, NULL},
         {"room, blue", ROOM, BLUE, 0.5f, 0.12, 0.05, NULL},
