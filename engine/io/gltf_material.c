@@ -1,6 +1,7 @@
 // gltf_material.c -- materials of a glTF file as diffuse surfaces.
 //
-// Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic); of specular-glossiness diffuse.
+// Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic). Of specular-glossiness
+// (KHR_materials_pbrSpecularGlossiness) likewise: albedo = diffuse.
 #include "io/gltf_material.h"
 #include <float.h>
 #include <math.h>
@@ -151,18 +152,24 @@ static tyn_result read_extension(const json_doc *doc, const cJSON *json, const c
     return tyn_json_object(doc, extensions, name, out);
 }
 
-// The diffuse texture's info, or NULL; the factor is put in place of the base colour's where it is of specular-glossiness.
-static tyn_result read_diffuse(const json_doc *doc, const cJSON *json, double factor[4],
-                               cJSON **info)
+// Of specular-glossiness its diffuse factor in place of the base colour's.
+static tyn_result read_diffuse_factor(const json_doc *doc, const cJSON *json, double factor[4])
+{
+    cJSON *gloss;
+    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    if (!gloss) {
+        return TYN_OK;
+    }
+    factor[0] = factor[1] = factor[2] = factor[3] = 1;
+    return tyn_json_numbers(doc, gloss, "diffuseFactor", 4, 0, 1, "between 0 and 1", factor);
+}
+
+// The info of its diffuse texture, or of that of the base colour; NULL: there is none.
+static tyn_result read_diffuse_texture(const json_doc *doc, const cJSON *json, cJSON **info)
 {
     cJSON *gloss, *pbr;
     TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
     if (gloss) {
-        if (factor) {
-            factor[0] = factor[1] = factor[2] = factor[3] = 1;
-            TYN_TRY(
-                tyn_json_numbers(doc, gloss, "diffuseFactor", 4, 0, 1, "between 0 and 1", factor));
-        }
         return tyn_json_object(doc, gloss, "diffuseTexture", info);
     }
     TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
@@ -201,7 +208,7 @@ static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *jso
     double metallic;
     cJSON *info;
     TYN_TRY(read_metallic(m, index, json, &metallic));
-    TYN_TRY(read_diffuse(doc, json, NULL, &info));
+    TYN_TRY(read_diffuse_texture(doc, json, &info));
     if (info) {
         TYN_TRY(read_place(doc, info, &out->color));
         TYN_TRY(tyn_gltf_texture_get(&m->textures, info, &out->surface.texture));
@@ -250,7 +257,7 @@ static tyn_result read_mask(gltf_materials *m, int64_t index, const cJSON *json,
     } else if (strcmp(mode, "MASK") == 0 && cutoff > 0) {
         out->cutoff = cutoff;
         out->opacity = factor[3];
-        TYN_TRY(read_diffuse(doc, json, NULL, &info));
+        TYN_TRY(read_diffuse_texture(doc, json, &info));
         return info ? read_picture(m, info, &out->alpha) : TYN_OK;
     } else if (strcmp(mode, "MASK") != 0 && strcmp(mode, "OPAQUE") != 0) {
         return tyn_json_fault(doc, tyn_json_member(json, "alphaMode"),
@@ -287,8 +294,7 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     const cJSON *json = m->list.items[at];
     double factors[TYN_MATERIAL_NUM_FIELDS][4];
     TYN_TRY(read_factors(m->textures.data->doc, json, factors));
-    cJSON *diffuse;
-    TYN_TRY(read_diffuse(m->textures.data->doc, json, factors[TYN_MATERIAL_ALBEDO], &diffuse));
+    TYN_TRY(read_diffuse_factor(m->textures.data->doc, json, factors[TYN_MATERIAL_ALBEDO]));
     TYN_TRY(read_mask(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
     TYN_TRY(read_albedo(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
     TYN_TRY(read_emission(m, json, loaded, factors[TYN_MATERIAL_EMISSION]));

@@ -23,7 +23,8 @@ static uint32_t num_followed(const tyn_balance_params *p, bool sky)
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params, true) * sizeof(struct balance_light));
+    tyn_build_buffer(b, BALANCE_PORT_FOUND,
+                     num_followed(params, true) * sizeof(struct balance_light));
     tyn_build_buffer(b, BALANCE_PORT_BALANCE, TYN_BALANCE_BYTES);
     return TYN_OK;
 }

@@ -37,7 +37,7 @@ float reflect_light(uint i, uint ch, uint per_direction)
     if ((cut & (1u << LATTICE_DIRECTIONS) - 1u) != 0u) {
         for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
             if ((cut >> d & 1u) != 0u) {
-                float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
+                float share = lattice_share(d);
                 sum += share * texelFetch(arrived_words, int(d * per_direction + i)).x;
             }
         }

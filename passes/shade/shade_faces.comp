@@ -2,8 +2,8 @@
 //
 // A thread a patch. Light that a cell at the box's face sends out is the net flux there, on the line through the
 // fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Where surfaces close by send light
-// back (walls_beyond) what leaves is more than the net flux by that: their albedo times their share of phi / 4 + F.n / 2. Its directions are
-// those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
+// back (walls_beyond) what leaves is more than the net flux by that: their albedo times their share of phi / 4 + F.n / 2. Its
+// directions are those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
@@ -40,7 +40,7 @@ vec3 returns_of(int index, uint inner, ivec3 outwards)
     uint links = around_links[index] & ~inner;
     float all = 0.0, cut = 0.0;
     for (uint link = 0u; link < 14u; link++) {
-        float share = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        float share = lattice_share(link);
         share = dot(vec3(lattice_step(link)), vec3(outwards)) > 0.0 ? share : 0.0;
         all += share;
         cut += (links >> link & 1u) != 0u ? share : 0.0;

@@ -60,7 +60,7 @@ void main()
     wall_cell cell = wall_cell(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0), 0.0);
     for (uint some = cut & 0x3fffu; some != 0u; some &= some - 1u) {
         uint link = uint(findLSB(some));
-        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        float a = lattice_share(link);
         cell.area += a;
         cell.albedo += a * albedo_at(hits[link * n + i] & 0xffffffu, vec3(c), vec3(walls_step(link)));
     }

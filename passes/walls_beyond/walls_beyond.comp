@@ -30,8 +30,8 @@ vec3 place_in_cell(uint k)
     return 0.25 * (1.0 - 2.0 * vec3(k == 2u || k == 3u, k == 1u || k == 3u, k == 1u || k == 2u));
 }
 
-// What of a diffuse surface's light of the normal `n` goes back through the faces that a step leaves the lattice by (`outwards`):
-// (1 + cos) / 2 to the half space behind a face, the mean of the faces.
+// What of the light of a diffuse surface of the normal `n` goes back through the faces that a step leaves the lattice by
+// (`outwards`): (1 + cos) / 2 to the half space behind a face, the mean of the faces.
 float share_back(vec3 n, vec3 outwards)
 {
     return 0.5 - 0.5 * dot(n, outwards) / dot(outwards, outwards);
@@ -82,7 +82,7 @@ void main()
             bool leaves = any(notEqual(outwards, vec3(0.0)));
             vec3 albedo;
             if (leaves && (cut >> link & 1u) == 0u && ends_beyond(centre, vec3(step), outwards, box.dx, albedo)) {
-                float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+                float a = lattice_share(link);
                 cut |= 1u << link;
                 area += a;
                 all += a * albedo;

@@ -17,6 +17,12 @@ float lattice_weight(uint direction)
     return direction < 6 ? LATTICE_WEIGHT_AXIS : LATTICE_WEIGHT_DIAGONAL;
 }
 
+// Of a cell's face, in its areas: what a direction takes of a wall across an axis that it is along or oblique to.
+float lattice_share(uint direction)
+{
+    return lattice_weight(direction) * (direction < 6u ? 1.0 : inversesqrt(3.0));
+}
+
 // Steps of direction 0..13; 0..5 are the axes.
 ivec3 lattice_step(uint direction)
 {

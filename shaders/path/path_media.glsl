@@ -64,7 +64,6 @@ float shape_density(shape_block shape, vec3 local)
 }
 
 // A grid of colours of the shape, likewise; TYN_COLORS_*.
-
 vec3 shape_color(shape_block shape, uint which, vec3 local)
 {
     vec3 texel = shape_colors_texel(shape.colors[which], local);

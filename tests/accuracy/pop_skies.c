@@ -51,10 +51,7 @@ static bool compare(const picture *p, const picture *reference, double error, do
     printf("%s: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n", name, 100 * e.rel_l1, 100 * e.noise,
            100 * e.bias);
     const bool near = within(e.reported, error, NULL, "%s, error", name);
-    const bool noise = fabs(e.bias) < 0.2 * e.noise;
-    return within(fabs(e.bias), bias, noise ? "the reference's mean is no surer" : NULL, "%s, bias",
-                  name) &&
-           near;
+    return within(fabs(e.bias), bias, picture_bias_why(&e), "%s, bias", name) && near;
 }
 
 // ---- what changes nothing -------------------------------------------------------------------------

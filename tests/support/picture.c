@@ -239,3 +239,8 @@ double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *sce
     tyn_offline_destroy(&off);
     return worst;
 }
+
+const char *picture_bias_why(const picture_error *e)
+{
+    return fabs(e->bias) < 0.2 * e->noise ? "the reference's mean is no surer" : NULL;
+}

@@ -44,6 +44,10 @@ typedef struct picture_error {
 } picture_error;
 picture_error picture_compare(const picture *a, const picture *reference, uint32_t block);
 
+// Why the bound of a bias may be wide, or NULL: a mean over 25 blocks and more has a fifth of their noise at most, and one
+// that is less is 0 as far as the reference tells.
+const char *picture_bias_why(const picture_error *e);
+
 // A method with settings: "pass.option=value ...", or NULL.
 tyn_offline *scene_open(tyn_device *dev, const char *method, const char *settings);
 
