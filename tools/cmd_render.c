@@ -17,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 typedef struct render_args {
     scene_options scene;
@@ -181,6 +182,16 @@ static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view
     return timing_run(a, &job->renderer, scene, view, what, job->repeat, median);
 }
 
+// The picture that --resume takes up; `count` if there is none.
+static uint32_t first_exr(const opt_list *files)
+{
+    uint32_t i = 0;
+    while (i < files->count && !text_ends_with(files->items[i], ".exr")) {
+        i++;
+    }
+    return i;
+}
+
 // What is written of a picture.
 typedef struct picture_state {
     app *a;
@@ -192,10 +203,13 @@ typedef struct picture_state {
     double keeping;  // what that took, s
 } picture_state;
 
-// All files, or those from which the picture can be gone on with.
+// All files, or those from which the picture can be gone on with. The first .exr says that a picture is done (take_up): it
+// comes last.
 static int write_outputs(const picture_state *p, bool sums, bool resumable)
 {
-    for (uint32_t i = 0; i < p->files->count; i++) {
+    const uint32_t count = p->files->count, first = first_exr(p->files);
+    for (uint32_t k = 0; k < count; k++) {
+        const uint32_t i = first == count ? k : (first + 1 + k) % count;
         if (resumable && !text_ends_with(p->files->items[i], ".exr")) {
             continue;
         }
@@ -238,24 +252,40 @@ static void keep_interrupted(picture_state *p, uint32_t asked)
                                                 : "what there is has been written");
 }
 
-// --resume: what the first .exr has of the picture. *whole: all of it.
-static int take_up(app *a, const render_job *job, const picture_state *p, uint32_t asked,
-                   resumed *r, bool *whole)
+// Nothing is rendered of a picture that has all its samples: are the other files there?
+static int check_written(app *a, const picture_paths *paths, const char *done, uint32_t samples)
 {
-    *whole = false;
-    *r = (resumed){0};
-    for (uint32_t i = 0; job->args->resume && i < p->files->count; i++) {
-        if (!text_ends_with(p->files->items[i], ".exr")) {
-            continue;
+    for (uint32_t i = 0; i <= paths->outputs.count; i++) {
+        const char *file = i < paths->outputs.count ? paths->outputs.items[i] : paths->stats;
+        if (file && access(file, F_OK) != 0) {
+            app_error(a,
+                      "%s: has %u samples already, and '%s' is not made from it: ask for more "
+                      "--spp, or leave --resume out",
+                      done, samples, file);
+            return EXIT_WRONG;
         }
-        int code = resumed_read(a, p->files->items[i], &p->tags, r);
-        *whole = code == EXIT_DONE && r->resume.num_samples >= asked;
-        if (*whole) {
-            app_note(a, "%s: has %u samples already", p->files->items[i], r->resume.num_samples);
-        }
-        return code;
     }
     return EXIT_DONE;
+}
+
+// --resume: what the first .exr has of the picture. *whole: all of it.
+static int take_up(app *a, const render_job *job, const picture_paths *paths,
+                   const picture_tags *tags, uint32_t asked, resumed *r, bool *whole)
+{
+    const uint32_t first = first_exr(&paths->outputs);
+    *whole = false;
+    *r = (resumed){0};
+    if (!job->args->resume || first == paths->outputs.count) {
+        return EXIT_DONE;
+    }
+    const char *file = paths->outputs.items[first];
+    int code = resumed_read(a, file, tags, r);
+    *whole = code == EXIT_DONE && r->resume.num_samples >= asked;
+    if (*whole) {
+        app_note(a, "%s: has %u samples already", file, r->resume.num_samples);
+        code = check_written(a, paths, file, r->resume.num_samples);
+    }
+    return code;
 }
 
 // What the run gave, in a line for people.
@@ -423,7 +453,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     resumed before = {0};
     bool whole = false;
     if (code == EXIT_DONE) {
-        code = take_up(a, job, &picture, view.num_samples, &before, &whole);
+        code = take_up(a, job, paths, &picture.tags, view.num_samples, &before, &whole);
     }
     if (code == EXIT_DONE && !whole) {
         code = render_samples(job, scene, &view, &picture, &before.resume);

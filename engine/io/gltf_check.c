@@ -140,7 +140,7 @@ static tyn_result check_sparse(const checker *c, const cJSON *accessor, int64_t 
     }
     TYN_TRY(tyn_json_integer(c->doc, indices, "componentType", 5121, 5125, "5121, 5123 or 5125",
                              &type));
-    if (!component_bytes(type)) {
+    if (type != 5121 && type != 5123 && type != 5125) {
         return tyn_json_fault(c->doc, indices, "componentType must be 5121, 5123 or 5125");
     }
     TYN_TRY(check_extent(c, indices, count, component_bytes(type)));

@@ -15,6 +15,9 @@ enum { MAX_VERTICES = 1 << 27 }; // and triangles: nodes may show one mesh any n
 enum { MAX_FACETS = 1 << 21 };   // beyond the file's triangles
 #endif
 
+// Triangles without area are looked at and left out: so many vertices and indices are, instances and all.
+static const uint64_t MAX_VISITED = 8 * (uint64_t)MAX_VERTICES;
+
 enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_FACETS, LACK_AREA };
 enum { MODE_TRIANGLES = 4, MODE_STRIP, MODE_FAN };
 
@@ -422,6 +425,12 @@ static void add_triangle(arrival *a)
 // Triangles without area show nothing and are left out.
 static tyn_result add_triangles(gltf_meshes *m, const primitive *p, const placement *at)
 {
+    m->visited += (uint64_t)p->positions.count + p->num_indices;
+    if (m->visited > MAX_VISITED) {
+        return tyn_json_fault(m->data.doc, p->json,
+                              "nodes and instances show more than %llu vertices and indices",
+                              (unsigned long long)MAX_VISITED);
+    }
     arrival a = {.m = m, .p = p, .at = at, .moved = malloc(p->positions.count * sizeof *a.moved)};
     const uint32_t count = p->mode == MODE_TRIANGLES ? p->num_indices / 3 : p->num_indices - 2;
     if (!a.moved) {

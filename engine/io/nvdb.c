@@ -588,8 +588,9 @@ static bool can_unpack(const entry *e)
 #endif
 }
 
-// Of grids that can be read all; of others what the table of contents says of them.
-static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
+// Of grids that can be read all; of others what the table of contents says of them. `left`: values that may still be read for
+// their range, as a megabyte can name thousands of large grids.
+static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in, double *left)
 {
     static const char *const classes[PNANOVDB_GRID_CLASS_END] = {
         "unknown",    "level set", "fog volume",   "staggered", "point index",
@@ -614,14 +615,15 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
     g->affine = true;
     tyn_result r = TYN_OK;
     double values = is_vector(e) ? 3 : 1;
-    bool fits = true; // so many are never read for their range alone
+    bool fits = true;
     for (int a = 0; a < 3; a++) {
         const double side = (double)g->hi[a] - g->lo[a] + 1;
         fits = fits && side <= 65536;
         values *= side;
     }
-    fits = fits && values <= (double)TYN_MAX_VOXELS && can_unpack(e);
+    fits = fits && values <= *left && can_unpack(e);
     if (fits && !level_set && g->active_voxels && (is_readable(e) || is_vector(e))) {
+        *left -= values;
         uint8_t *memory = NULL;
         tyn_grid_job job = {.log = in->log};
         r = unpack(e, in, &memory);
@@ -645,6 +647,7 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in)
 static tyn_result tell_all(tyn_grid_job *job, const contents *list, const input *in)
 {
     tyn_result r = TYN_OK;
+    double left = (double)TYN_MAX_VOXELS;
     job->list = calloc(list->count + 1, sizeof *job->list);
     job->num_list = list->count;
     if (!job->list) {
@@ -652,7 +655,7 @@ static tyn_result tell_all(tyn_grid_job *job, const contents *list, const input 
         return TYN_ERR_MEMORY;
     }
     for (uint32_t i = 0; !r && i < list->count; i++) {
-        r = tell(&job->list[i], &list->grids[i], in);
+        r = tell(&job->list[i], &list->grids[i], in, &left);
     }
     if (r) {
         free(job->list);

@@ -218,7 +218,7 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     if (rsm.num_tiles + params.emitters == 0) {
         return;
     }
-    s->surface_light.of_sky = sky && rsm.tiles[rsm.num_tiles - 1].light >= TYN_RSM_SKY;
+    s->surface_light.of_sky = sky && rsm.num_tiles && rsm.tiles[rsm.num_tiles - 1].light >= TYN_RSM_SKY;
     if (!tyn_can_trace(job)) {
         tyn_job_warn(job, "the surfaces have no hierarchy: light that they reflect passes "
                           "through other surfaces");

@@ -117,6 +117,11 @@ near "$(value rel_l1)" 0 1e-6 "128 samples, and 64 and 64"
 [ "$(samples more.exr)" = 128 ] || fail "$(samples more.exr) samples"
 cp more.exr kept.exr
 works render $cube --method path --spp 100 -o more.exr --resume # has them already
+refuses 2 "'more.png' is not made from it" render $cube --method path --spp 100 -o more.png -o more.exr --resume
+works render $cube --method path --spp 130 -o more.exr -o more.png --resume --stats more.json
+works render $cube --method path --spp 130 -o more.exr -o more.png --resume --stats more.json
+rm more.png more.json
+cp kept.exr more.exr
 refuses 2 "was begun with --seed 0" render $cube --method path --spp 200 -o more.exr --resume --seed 1
 refuses 2 "is another picture" render $cube --method path --spp 200 -o more.exr --resume --g 0.5
 refuses 2 "is another picture" render $cube --method path --spp 200 -o more.exr --resume --max-depth 3

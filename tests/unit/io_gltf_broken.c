@@ -91,6 +91,19 @@ static const struct {
     {VIEW
      "'accessors': [{'componentType': 5126, 'count': 1, 'type': 'VEC3', 'sparse': {'count': 1}}]}",
      "sparse", "needs"},
+    {VIEW
+     "'accessors': [{'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 1, "
+     "'indices': {'bufferView': 0, 'componentType': 5122}, 'values': {'bufferView': 0}}}]}",
+     "componentType must be 5121", ""},
+    {A "'accessors': [{'componentType': 5126, 'count': 134217728, 'type': 'VEC3'}], 'meshes': "
+       "[{'primitives': [{'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}]}",
+     "accessors[0].count", "without a bufferView"},
+    // Instances of what has no area, of a file without a buffer.
+    {A "'accessors': [{'componentType': 5126, 'count': 4194304, 'type': 'VEC3'}, {'componentType': "
+       "5126, 'count': 999999, 'type': 'VEC3'}], 'meshes': [{'primitives': [{'attributes': "
+       "{'POSITION': 1}}]}], 'nodes': [{'mesh': 0, 'extensions': {'EXT_mesh_gpu_instancing': "
+       "{'attributes': {'TRANSLATION': 0}}}}]}",
+     "primitives[0]", "vertices and indices"},
     {A "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}]}", "POSITION = 0",
      "there are 0"},
     {A "'meshes': [{'primitives': [{'attributes': {}, 'indices': 4}]}]}", "indices = 4", ""},
