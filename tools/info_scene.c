@@ -175,8 +175,9 @@ static void print_lights(const tyn_scene *scene)
 {
     if (scene->num_lights) {
         printf("lights: taken in %s%s%s%s\n",
-               scene->light_units == TYN_LIGHTS_PHOTOMETRIC ? "lux and candela, 683 lm to the watt"
-                                                            : "W/m^2 and W/sr",
+               scene->light_units == TYN_LIGHTS_PHOTOMETRIC
+                   ? "lux and candela, 683 lm to the watt (emission in W/(m^2 sr))"
+                   : "W/m^2 and W/sr",
                scene->generator ? "; the file is from '" : "",
                scene->generator ? scene->generator : "", scene->generator ? "'" : "");
     }

@@ -35,7 +35,7 @@ const option scene_table[SCENE_TABLE_SIZE] = {
     {0, "fps", OPT_NUMBER, SCENE_AT(fps), "F", "pictures a second of a sequence", 24, 1e-3, 1e6},
     {0, "light-units", OPT_TEXT, SCENE_AT(light_units), "radiometric|photometric",
      "what a glTF file's lights are given in: W/m^2 and W/sr, or lux and candela (683 lm/W); else "
-     "what it says of its generator: watts without one",
+     "what it says of its generator: watts without one; surfaces emit in W/(m^2 sr) in either",
      .names = light_units},
 };
 
@@ -112,6 +112,17 @@ static tyn_result load(app *a, const scene_options *options, const char *environ
     return result;
 }
 
+static bool scene_emits(const tyn_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
+        const float *e = scene->surfaces.materials[i].emission;
+        if (e[0] + e[1] + e[2] > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Which units were taken, where that is not what the library computes with.
 static void choose_light_units(app *a, const char *units, tyn_scene *scene)
 {
@@ -123,8 +134,9 @@ static void choose_light_units(app *a, const char *units, tyn_scene *scene)
         app_note(
             a,
             "lights are taken in lux and candela, 683 lm to the watt, as '%.100s' writes them; "
-            "if they are in watts: --light-units radiometric",
-            scene->generator ? scene->generator : "");
+            "if they are in watts: --light-units radiometric%s",
+            scene->generator ? scene->generator : "",
+            scene_emits(scene) ? "; surfaces emit in W/(m^2 sr) all the same" : "");
     }
 }
 

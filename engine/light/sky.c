@@ -72,6 +72,7 @@ static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *
     tyn_sky_shadows_params params;
     tyn_settings_params(job->settings, &tyn_pass_sky_shadows, &params);
     params.count = count;
+    params.wide = params.reach > 0.0f && tyn_reach_beyond(job->frame, params.reach);
     params.num_triangles = job->frame->num_triangles;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SKY_SHADOWS_PORT_MEDIUM] = job->refs.medium,

@@ -3,6 +3,8 @@
 #include <tyndall/extend/sources.h>
 #include "light/passes.h"
 
+// Do surfaces reach beyond the medium's box by more than so many of its longest side?
+bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides);
 // Sums of the environment's map without its suns (sky_args.h: struct sky_sum).
 tyn_ref tyn_add_sky_sums(tyn_graph *g, const tyn_job *job);
 // All light of the environment that is no sun's with a beam, its mean too, as ordinates and their directions, whatever the camera

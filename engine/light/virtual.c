@@ -21,28 +21,22 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
     return most;
 }
 
-// Do surfaces reach beyond the medium's box by more than so many of its longest side?
-static bool reach_beyond(const tyn_frame_scene *frame, float sides)
+bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides)
 {
-    const float *m = frame->m_from_world, *extent = frame->medium.extent;
+    const float *extent = frame->medium.extent;
     const float margin = sides * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    float lo[3], hi[3];
     bool beyond = false;
-    for (int corner = 0; corner < 8; corner++) {
-        float p[3];
-        for (int a = 0; a < 3; a++) {
-            p[a] = corner >> a & 1 ? frame->surfaces.hi[a] : frame->surfaces.lo[a];
-        }
-        for (int a = 0; a < 3; a++) {
-            float x = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
-            beyond = beyond || x < -margin || x > extent[a] + margin;
-        }
+    tyn_surfaces_box(frame, lo, hi);
+    for (int a = 0; a < 3; a++) {
+        beyond = beyond || lo[a] < -margin || hi[a] > extent[a] + margin;
     }
     return beyond;
 }
 
 bool tyn_vpls_bounce(const tyn_job *job)
 {
-    return job->frame->empty || reach_beyond(job->frame, 0.15f);
+    return job->frame->empty || tyn_reach_beyond(job->frame, 0.15f);
 }
 
 // The area of a triangle if it is outside the medium's box by more than `margin` and its front looks there, m^2.
@@ -97,7 +91,7 @@ static bool carry_all(const tyn_job *job, const tyn_sources *s)
     const bool alone = tyn_num_beams(lights) + lights->num_lamps == 0; // all VPLs are the sky's
     return tyn_vpls_bounce(job) ||
            (s->sky.maps.sky_maps.resource &&
-            ((alone && reach_beyond(job->frame, 0.01f)) || stand_around(job)));
+            ((alone && tyn_reach_beyond(job->frame, 0.01f)) || stand_around(job)));
 }
 
 // The area of a sun's texel across the light; the solid angle of a lamp's in the middle of its map.
@@ -218,7 +212,8 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     if (rsm.num_tiles + params.emitters == 0) {
         return;
     }
-    s->surface_light.of_sky = sky && rsm.num_tiles && rsm.tiles[rsm.num_tiles - 1].light >= TYN_RSM_SKY;
+    s->surface_light.of_sky =
+        sky && rsm.num_tiles && rsm.tiles[rsm.num_tiles - 1].light >= TYN_RSM_SKY;
     if (!tyn_can_trace(job)) {
         tyn_job_warn(job, "the surfaces have no hierarchy: light that they reflect passes "
                           "through other surfaces");

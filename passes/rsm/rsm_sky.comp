@@ -67,7 +67,7 @@ vec3 sky_from(uint k, shadow_surface s, out float cosine)
     cosine = dot(s.n, towards);
     float share = abs(cosine);
     if (share > 0.0) {
-        share *= shadow_visibility_on_sun_map(sky_atlas, sky_map_of(k), s);
+        share *= shadow_visibility_on_sun_map(sky_atlas, sky_map_around(sky_map_of(k), s.p), s);
     }
     if (share > 0.0 && args.cells.x > 0u) {
         vec2 way = ray_box(s.p, ray_inverse(towards), vec3(0.0), medium.extent);

@@ -38,7 +38,7 @@ vec3[SHADE_MANY] shade_sky(shade_point p[SHADE_MANY], vec4 part[SHADE_MANY], uin
         [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
             float share = shade_cosine(p[i], towards);
             if (share > 0.0) {
-                share *= shadow_visibility_on_sun_map(sky_atlas, map, surface[i]);
+                share *= shadow_visibility_on_sun_map(sky_atlas, sky_map_around(map, surface[i].p), surface[i]);
             }
             if (share > 0.0) {
                 vec3 left = vec3(1.0);

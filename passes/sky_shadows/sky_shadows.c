@@ -26,16 +26,23 @@ static const tyn_param params_table[] = {
     {"texels", TYN_PARAM_INT, offsetof(tyn_sky_shadows_params, texels), 256, 16, 512, "texels",
      "side of the depth map of each direction of the sky", NULL},
     {"reach", TYN_PARAM_FLOAT, offsetof(tyn_sky_shadows_params, reach), 3, 0, 1000, "",
-     "surfaces that stand so many times the longest side of the media's box beyond it are lit "
-     "without shadows; 0: none are",
+     "surfaces that stand more than so many times the longest side of the media's box beyond it "
+     "have coarser maps, of all surfaces; 0: one map of all",
      NULL},
 };
+
+enum { MAX_MAPS = 2 * TYN_ORDINATES_MAX };
+
+static uint32_t num_maps(const tyn_sky_shadows_params *p)
+{
+    return p->wide ? 2 * p->count : p->count;
+}
 
 // Maps in a row of the atlas.
 static uint32_t across(const tyn_sky_shadows_params *p)
 {
     uint32_t side = 1;
-    while (side * side < p->count) {
+    while (side * side < num_maps(p)) {
         side++;
     }
     return side;
@@ -44,10 +51,10 @@ static uint32_t across(const tyn_sky_shadows_params *p)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_sky_shadows_params *p = params;
-    const uint32_t maps = p->count, side = across(p), texels = (uint32_t)p->texels;
-    if (maps < 1 || maps > TYN_ORDINATES_MAX) {
+    const uint32_t maps = num_maps(p), side = across(p), texels = (uint32_t)p->texels;
+    if (p->count < 1 || p->count > TYN_ORDINATES_MAX) {
         tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "sky_shadows: count is %u; must be 1 to %d directions", maps,
+                      "sky_shadows: count is %u; must be 1 to %d directions", p->count,
                       TYN_ORDINATES_MAX);
         return TYN_ERR_PARAMS;
     }
@@ -60,14 +67,14 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_sky_shadows_params *p = params;
-    const uint32_t maps = p->count, side = across(p), texels = (uint32_t)p->texels;
+    const uint32_t maps = num_maps(p), side = across(p), texels = (uint32_t)p->texels;
     const struct sky_frames_args args = {
-        .across = side, .texels = (float)texels, .reach = p->reach};
+        .across = side, .texels = (float)texels, .reach = p->reach, .count = p->count};
     TYN_DISPATCH(r, .kernel = KERNEL_FRAMES, .cells = {maps, 1, 1}, .args = &args);
-    tyn_tile tiles[TYN_ORDINATES_MAX];
-    struct sky_draw_args draws[TYN_ORDINATES_MAX];
+    tyn_tile tiles[MAX_MAPS];
+    struct sky_draw_args draws[MAX_MAPS];
     for (uint32_t i = 0; i < maps; i++) {
-        draws[i] = (struct sky_draw_args){.map = i};
+        draws[i] = (struct sky_draw_args){.map = i, .direction = i % p->count};
         tiles[i] = (tyn_tile){.x = i % side * texels,
                               .y = i / side * texels,
                               .width = texels,

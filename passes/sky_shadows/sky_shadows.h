@@ -12,6 +12,7 @@ typedef struct tyn_sky_shadows_params {
     float reach;    // "sky_shadows.reach"
     // Set by the method:
     uint32_t count; // directions at most
+    bool wide;      // surfaces stand beyond the reach: each direction has a second map, of all
     uint32_t num_triangles;
 } tyn_sky_shadows_params;
 
@@ -24,7 +25,7 @@ typedef struct tyn_sky_shadows_params {
     X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions"), \
     X(SKY_SHADOWS, SKY_ATLAS, sky_atlas, OUT, IMAGE_2D, \
         "reversed depth of what each map sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
-    X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction")
+    X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces")
 // clang-format on
 enum { SKY_SHADOWS_PORTS(TYN_PORT_ENUM), SKY_SHADOWS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_sky_shadows;

@@ -1,6 +1,6 @@
 // sky_shadows_frames.comp -- the frames of the maps: one thread a map.
 //
-// A map is fitted around the surfaces as its direction sees them, or what of them is near the medium. Depths reach over all
+// A map is fitted around what of the surfaces is near the medium, as its direction sees it, or, a second one, around all. Depths reach over all
 // surfaces. Maps are two texels wider than need be on all sides, so that the texels around any place inside belong to the map.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -35,15 +35,15 @@ vec2 range_of_all(vec3 r)
                                    dot(max(w * surfaces.lo, w * surfaces.hi), vec3(1.0)));
 }
 
-// The box in M of the surfaces near the medium: from, to.
-void near_box(out vec3 from, out vec3 to)
+// The box in M of the surfaces that are within `sides` of its longest side of the medium: from, to. 0: of all.
+void near_box(float sides, out vec3 from, out vec3 to)
 {
     for (int a = 0; a < 3; a++) {
         vec2 range = range_of_all(vec3(equal(ivec3(a), ivec3(0, 1, 2))));
         from[a] = range.x;
         to[a] = range.y;
     }
-    float longest = max(medium.extent.x, max(medium.extent.y, medium.extent.z)), reach = args.reach * longest;
+    float longest = max(medium.extent.x, max(medium.extent.y, medium.extent.z)), reach = sides * longest;
     vec3 lo = min(max(from, vec3(-reach)), to), hi = max(min(to, medium.extent + reach), from);
     if (reach > 0.0) {
         from = lo;
@@ -56,11 +56,11 @@ vec2 range_of(vec3 r, vec3 from, vec3 to)
     return vec2(dot(min(r * from, r * to), vec3(1.0)), dot(max(r * from, r * to), vec3(1.0)));
 }
 
-shadow_light frame_of(vec3 d)
+shadow_light frame_of(vec3 d, bool of_all)
 {
     shadow_light map;
     vec3 from, to;
-    near_box(from, to);
+    near_box(of_all ? 0.0 : args.reach, from, to);
     float margin = args.texels / (args.texels - 4.0), least = 1e38;
     // Of three maps, each with a side along an axis of the world's box, the one with the least area.
     for (int a = 0; a < 3; a++) {
@@ -96,14 +96,16 @@ void main()
     if (i >= uint(maps.length())) {
         return;
     }
-    vec3 d = ordinates.list[i].direction; // 0: not in use
+    bool wide = i >= args.count;
+    vec3 d = ordinates.list[wide ? i - args.count : i].direction; // 0: not in use
     d = dot(d, d) > 0.25 ? normalize(d) : vec3(0.0, -1.0, 0.0);
-    shadow_light map = frame_of(d);
+    shadow_light map = frame_of(d, wide);
     map.offset = args.texels * vec2(i % args.across, i / args.across);
     map.texels = args.texels;
     map.scale = 0.0;
     map.near = 0.0;
     map.kind = TYN_SHADOW_SUN;
-    map.pad = uvec2(0u);
+    map.wider = !wide && args.count < uint(maps.length()) ? args.count + i : 0u;
+    map.pad = 0u;
     maps[i] = map;
 }

@@ -15,7 +15,7 @@ TYN_ARGS(sky_draw_args args);
 void main()
 {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // nowhere: of directions that are not in use nothing is drawn
-    if (args.map < ordinates.count) {
+    if (args.direction < ordinates.count) {
         surface_triangle t = triangles[gl_VertexIndex / 3];
         int corner = gl_VertexIndex % 3;
         uint v = corner == 0 ? t.v0 : corner == 1 ? t.v1 : t.v2;

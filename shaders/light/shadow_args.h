@@ -24,7 +24,8 @@ struct shadow_light { // element of storage buffer "shadows", TYN_SHADOW_MAX of 
     float scale;      // CONE, CUBE: u = scale x / z, v = scale y / z
     float near;       // CONE, CUBE: m; what is nearer to the light casts no shadow
     tyn_uint kind;    // TYN_SHADOW_*
-    tyn_uvec2 pad;
+    tyn_uint wider;   // of the sky's maps: the one that covers all surfaces; 0: none does more than this
+    tyn_uint pad;
 };
 TYN_ASSERT_SIZE(shadow_light, 80);
 

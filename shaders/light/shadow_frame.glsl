@@ -19,7 +19,7 @@ shadow_light shadow_light_of(uint n)
     }
     vec4 place = uintBitsToFloat(texelFetch(shadows_texels, at + 3));
     uvec4 kind = texelFetch(shadows_texels, at + 4);
-    return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.zw);
+    return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.z, kind.w);
 }
 #else
 #ifdef SHADOWS_STORAGE

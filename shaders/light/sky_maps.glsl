@@ -18,7 +18,17 @@ shadow_light sky_map_of(uint n)
     }
     vec4 place = uintBitsToFloat(texelFetch(sky_maps_texels, at + 3));
     uvec4 kind = texelFetch(sky_maps_texels, at + 4);
-    return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.zw);
+    return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.z, kind.w);
+}
+
+// The map of the same direction that shows place p: `map`, or beyond what it covers the wider one.
+shadow_light sky_map_around(shadow_light map, vec3 p)
+{
+    vec2 q = shadow_frame(map, p).xy;
+    if (map.wider > 0u && any(greaterThanEqual(abs(q), vec2(1.0)))) {
+        return sky_map_of(map.wider);
+    }
+    return map;
 }
 
 // Of a place in the medium: SHADOW_LIT_BY_*.

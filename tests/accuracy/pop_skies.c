@@ -147,6 +147,67 @@ static void closed_rooms(void **state)
     assert_true(good);
 }
 
+// A room of 6 m around smoke of half a metre: its walls stand beyond what the first maps cover.
+static void wide_rooms(void **state)
+{
+    gpu_test *t = *state;
+    bool good = true;
+    for (int k = 0; k < 2; k++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        const uint32_t m = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
+        solids_box(&scene, (float[]){-3, -3, -3}, (float[]){3, 3, 3}, k ? 0.5f : 0, true, m);
+        solids_hierarchy(&scene, 4);
+        const tyn_medium medium = grey_medium(1, 0.01f, 0.3f);
+        scene_add_box(&scene, &medium, (float[]){-0.25f, -0.25f, -0.25f},
+                      (float[]){0.25f, 0.25f, 0.25f}, NULL, NULL);
+        add_sky(&scene, BLUE);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){1.8f, 0.5f, 1.8f}, (float[]){-1, -1, -1}, 1.3f, SIZE);
+        picture p;
+        picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+        double sum = 0;
+        for (int i = 0; i < 3 * SIZE * SIZE; i++) {
+            sum += (double)p.rgb[i];
+        }
+        const double mean = sum / (3 * SIZE * SIZE);
+        printf("closed room of 12 boxes, turned by %g: mean %g\n", k ? 0.5 : 0, mean);
+        good = within(mean, 1e-6, NULL, "wide closed room %d, mean", k) && good;
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
+// A lamp of surfaces in the open, without places that reflect the sky: it is drawn by what the sky alone lights, and its own light.
+static void lamp_without_places(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    const uint32_t lamp = solids_material(&scene, (float[]){0, 0, 0}, (float[]){5, 5, 5});
+    const uint32_t floor = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+    solids_quad(&scene, (float[]){-2, 0, 2}, (float[]){4, 0, 0}, (float[]){0, 0, -4}, floor);
+    solids_quad(&scene, (float[]){-0.5f, 1, -0.5f}, (float[]){1, 0, 0}, (float[]){0, 0, 1}, lamp);
+    solids_hierarchy(&scene, 4);
+    add_sky(&scene, EVEN);
+    tyn_view view = {0};
+    view_perspective(&view, (float[]){0, 3, 3}, (float[]){0, 0, 0}, 1.0f, SIZE);
+    picture p, q;
+    picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+    picture_render(&q, t->dev, "pop", &scene, &view, "rsm.sky_texels=0", 0);
+    double most = 0, sum = 0;
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) {
+        assert_true(isfinite(q.rgb[i]));
+        most = q.rgb[i] > most ? (double)q.rgb[i] : most;
+        sum += (double)q.rgb[i] - (double)p.rgb[i];
+    }
+    assert_true(most > 1 && sum < 0);
+    picture_free(&p);
+    picture_free(&q);
+    tyn_scene_finish(&scene);
+}
+
 // ---- against path ---------------------------------------------------------------------------------
 
 // A tray in fog, or around it: walls 0.8 m high around a floor of 2 m. `albedo` of all of it.
@@ -270,8 +331,8 @@ static void against_path(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(leaf_beside_a_cloud),
-        cmocka_unit_test(closed_rooms),
+        cmocka_unit_test(leaf_beside_a_cloud), cmocka_unit_test(closed_rooms),
+        cmocka_unit_test(wide_rooms),          cmocka_unit_test(lamp_without_places),
         cmocka_unit_test(against_path),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
