@@ -7,6 +7,7 @@
 #include "base/given.h"
 #include "base/hash.h"
 #include "io/hdr.h"
+#include "io/primaries.h"
 
 static tyn_result load_hdr(uint32_t size[2], float **pixels, const char *path, const tyn_log *log)
 {
@@ -18,6 +19,23 @@ static tyn_result load_hdr(uint32_t size[2], float **pixels, const char *path, c
         free(bytes);
     }
     return r;
+}
+
+// Colours of the file's primaries as those of Rec. 709; what those do not reach is negative, and set to 0 with the rest.
+static void convert(float *pixels, size_t count, const tyn_image_file *image)
+{
+    const tyn_attribute *c = tyn_image_file_attribute(image, "chromaticities");
+    float m[9];
+    if (!c || c->kind != TYN_ATTRIBUTE_CHROMATICITIES || !tyn_primaries_to_rec709(c->values, m)) {
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        float *p = pixels + 3 * i;
+        const float rgb[3] = {p[0], p[1], p[2]};
+        for (int k = 0; k < 3; k++) {
+            p[k] = m[3 * k] * rgb[0] + m[3 * k + 1] * rgb[1] + m[3 * k + 2] * rgb[2];
+        }
+    }
 }
 
 static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, const tyn_log *log)
@@ -46,6 +64,7 @@ static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, c
         for (size_t i = 0; i < 3 * count; i++) {
             (*pixels)[i] = rgb[i % 3][i / 3];
         }
+        convert(*pixels, rgb[0] == grey ? 0 : count, &image);
     }
     size[0] = image.width;
     size[1] = image.height;

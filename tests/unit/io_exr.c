@@ -6,6 +6,7 @@
 #include <string.h>
 #include "io/exr.h"
 #include "io_test.h"
+#include "numbers.h"
 #include "skip.h"
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -236,6 +237,38 @@ static void environments(void **state)
     assert_int_equal(log.errors, 1);
     assert_true(env.data[3 * 16] == 0.5f); // what was there stays
     free(env.data);
+}
+
+// A map in the primaries of ACEScg: white stays white, and colours are those of the matrix that ACES publishes, by Bradford's
+// adaptation.
+static void primaries(void **state)
+{
+    static const double acescg[8] = {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767};
+    static const double none[8] = {0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3};
+    float values[3][2] = {{1, 0.5f}, {1, 0.25f}, {1, 0.25f}};
+    tyn_channel channels[3] = {{"R", values[0]}, {"G", values[1]}, {"B", values[2]}};
+    tyn_image_file image = {2, 1, 3, channels};
+    tyn_environment env = {0};
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    for (int k = 0; k < 2; k++) {
+        assert_true(tyn_image_file_set_numbers(&image, "chromaticities",
+                                               TYN_ATTRIBUTE_CHROMATICITIES, k ? none : acescg));
+        assert_int_equal(tyn_exr_write(&image, io_path("aces.exr"), true, &log.log), TYN_OK);
+        assert_int_equal(tyn_environment_load(&env, io_path("aces.exr"), &log.log), TYN_OK);
+        const float *first = env.data + 3 * 16, *second = env.data + 3 * 49;
+        for (int c = 0; c < 3; c++) {
+            static const double row[3][3] = {{1.70505, -0.62179, -0.08326},
+                                             {-0.13026, 1.14080, -0.01055},
+                                             {-0.02400, -0.12897, 1.15297}};
+            const double right = 0.5 * row[c][0] + 0.25 * (row[c][1] + row[c][2]);
+            assert_near(first[c], 1, 1e-5);
+            assert_near(second[c], k ? values[c][1] : right, 1e-4);
+        }
+    }
+    free(env.data);
+    free(image.attributes);
 }
 
 // Writes an image of 12 x 12 with the library itself: lines or 8 x 8 tiles that count from 0.
@@ -502,6 +535,7 @@ int main(void)
                                        cmocka_unit_test(refused_channels),
                                        cmocka_unit_test(saturation),
                                        cmocka_unit_test(environments),
+                                       cmocka_unit_test(primaries),
                                        cmocka_unit_test(kinds),
                                        cmocka_unit_test(broken),
                                        cmocka_unit_test(damaged_piz),
