@@ -42,7 +42,7 @@ static int part_open(app *a, const char *path, part *p)
                   path);
         return EXIT_WRONG;
     }
-    return EXIT_DONE;
+    return resume_check_sums(a, path, &p->file);
 }
 
 static bool same_text(const part *p, const part *q, const char *name)

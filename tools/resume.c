@@ -1,5 +1,6 @@
 // resume.c -- a picture that a method samples, taken up again from its .exr.
 #include "resume.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,30 @@ static int take(app *a, const char *path, const tyn_image_file *file, const imag
         }
         for (size_t i = 0; i < pixels; i++) {
             rgba[4 * i + (size_t)c] = plane[i];
+        }
+    }
+    return EXIT_DONE;
+}
+
+int resume_check_sums(app *a, const char *path, const tyn_image_file *file)
+{
+    static const struct {
+        const char *layer;
+        bool spread; // may not be negative
+    } layers[] = {
+        {"", false}, {RESUME_LOW ".", false}, {RESUME_DEVIATION ".", true}, {"error.", true}};
+    const size_t pixels = (size_t)file->width * file->height;
+    for (size_t k = 0; k < 4 * ARRAY_SIZE(layers); k++) {
+        char name[48];
+        snprintf(name, sizeof name, "%s%c", layers[k / 4].layer, "RGBA"[k % 4]);
+        const float *plane = tyn_image_file_channel(file, name);
+        for (size_t i = 0; plane && i < pixels; i++) {
+            if (!isfinite(plane[i]) || (layers[k / 4].spread && plane[i] < 0)) {
+                app_error(a, "%s: channel %s is %g at pixel %zu, %zu: must be finite%s", path, name,
+                          (double)plane[i], i % file->width, i / file->width,
+                          layers[k / 4].spread ? " and not negative" : "");
+                return EXIT_WRONG;
+            }
         }
     }
     return EXIT_DONE;
@@ -120,6 +145,9 @@ int resumed_read(app *a, const char *path, const picture_tags *tags, resumed *r)
     int code = app_exit_code(a, tyn_exr_read(&file, path, &a->log), true);
     if (code == EXIT_DONE) {
         code = check(a, path, &file, tags, &samples);
+    }
+    if (code == EXIT_DONE) {
+        code = resume_check_sums(a, path, &file);
     }
     if (code == EXIT_DONE) {
         code = take_images(a, path, &file, tags->view->outputs, r);

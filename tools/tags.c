@@ -79,6 +79,7 @@ void tags_hash(const picture_tags *tags, char hash[17])
     cJSON_DeleteItemFromObject(settings, "spp");
     char *text = cJSON_PrintUnformatted(settings);
     uint64_t key = bench_scene_hash(tags->scene, tags->view);
+    key = text_hash(tyn_version_string(), strlen(tyn_version_string()), key);
     key = text_hash(tags->method->info.name, strlen(tags->method->info.name), key);
     key = text ? text_hash(text, strlen(text), key) : key;
     snprintf(hash, 17, "%016llx", (unsigned long long)key);

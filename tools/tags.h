@@ -23,7 +23,7 @@ typedef struct picture_tags {
 // Adds them to the file's attributes. Gives the exit code.
 int tags_add(app *a, const picture_tags *tags, tyn_image_file *file);
 
-// A hash of all that decides on the picture but for seed and samples.
+// A hash of all that decides on the picture, the version too, but for seed and samples.
 void tags_hash(const picture_tags *tags, char hash[17]);
 
 // [first, first + count) of the samples of a seed.

@@ -1,15 +1,35 @@
 // exr_make.c -- `exr_make FILE W H NAME=V,V,... ...`: a small float EXR with the values given, for the
-// tests of the tool. "NAME=V" fills the channel with one value; V may be nan or inf.
+// tests of the tool. "NAME=V" fills the channel with one value; V may be nan or inf. `exr_make FILE of OTHER NAME=V`: OTHER, with
+// all it says of itself, and V in the first pixel of a channel.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tyndall/io.h>
+
+static int alter(const char *path, const char *other, const char *value)
+{
+    tyn_image_file image;
+    const char *equals = strchr(value, '=');
+    char name[48];
+    snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - value) : 0, value);
+    if (tyn_exr_read(&image, other, NULL) != TYN_OK || !tyn_image_file_channel(&image, name)) {
+        fprintf(stderr, "exr_make: '%s' has no channel '%s'\n", other, name);
+        return 1;
+    }
+    tyn_image_file_channel(&image, name)[0] = strtof(equals + 1, NULL);
+    tyn_result result = tyn_exr_write(&image, path, true, NULL);
+    tyn_image_file_finish(&image);
+    return result == TYN_OK ? 0 : 1;
+}
 
 int main(int argc, char **argv)
 {
     if (argc < 5) {
         fprintf(stderr, "usage: exr_make FILE W H NAME=V,V,... ...\n");
         return 2;
+    }
+    if (strcmp(argv[2], "of") == 0) {
+        return alter(argv[1], argv[3], argv[4]);
     }
     tyn_channel channels[16] = {0};
     tyn_image_file image = {

@@ -135,6 +135,12 @@ refuses 2 "has no channel resume_low.R" render $cube --method path --spp 16 -o p
 "$helpers/exr_make" foreign.exr 16 16 R=1 G=1 B=1
 refuses 2 "does not say which samples it has" render $cube --method path --spp 16 -o foreign.exr --resume
 
+"$helpers/exr_make" damaged.exr of kept.exr resume_deviation.G=-1
+refuses 2 "resume_deviation.G is -1 at pixel 0, 0" render $cube --method path --spp 200 -o damaged.exr --resume
+refuses 2 "resume_deviation.G is -1 at pixel 0, 0" merge damaged.exr plain.exr -o x.exr
+"$helpers/exr_make" damaged.exr of kept.exr R=nan
+refuses 2 "channel R is nan at pixel 0, 0" merge plain.exr damaged.exr -o x.exr
+
 # ---- parts of one run, merged: that run, within rounding ----
 parts= seeds=
 for n in 0 1 2 3 4 5 6 7; do
