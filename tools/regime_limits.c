@@ -36,6 +36,7 @@ void regime_figures(const regime *r, double cells, tyn_regime *out)
         .lamps = r->share[REGIME_LAMPS],
         .map = r->share[REGIME_MAP],
         .sky_on_surfaces = r->num_triangles ? sky : 0,
+        .glow_on_surfaces = r->num_triangles ? r->share[REGIME_EMISSION] : 0,
         .surfaces = r->num_triangles > 0,
         .repeats = r->periodic,
     };

@@ -202,6 +202,7 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         .lamps = NAN,
         .map = NAN,
         .sky_on_surfaces = lit && !job->frame->empty && tyn_has_walls(job->frame),
+        .glow_on_surfaces = NAN,
         .surfaces = job->frame->num_triangles > 0,
         .repeats = tyn_is_periodic(job->frame),
     };

@@ -39,10 +39,16 @@ static double forward(const tyn_regime *r)
     return tyn_limit_along(curve, COUNT(curve), lobe) * fmin(1, r->mean_depth);
 }
 
-// Courtyards 2 %, rooms with a window 5 %.
+// Models, courtyards and rooms with a window 1 to 4 %.
 static double sky(const tyn_regime *r)
 {
     return 0.04 * fmin(1, r->sky_on_surfaces);
+}
+
+// Before a window 36 %; about a floor 1 to 2 %.
+static double glow(const tyn_regime *r)
+{
+    return 0.2 * fmin(1, r->glow_on_surfaces);
 }
 
 #define REFUSES(light)                                                                             \
@@ -141,17 +147,25 @@ const tyn_limit tyn_limits_pop[] = {
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_STRAINED,
-     .advice = {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 10 %% off, "
-                "vpl-cave 21 %%)"},
+     .advice =
+         {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 10 %% off; a room "
+          "behind a door 11 %%; walls far outside the medium 15 %%; vpl-cave 21 %%)"},
      .source = "docs/accuracy.md, \"Lamps and walls\""},
     {.key = "the sky among surfaces",
      .where = {TYN_ABOVE(sky_on_surfaces, 0.05)},
      .error = sky,
      .level = TYN_LIMIT_STRAINED,
-     .advice = {"sky among surfaces: its shadows are those of 256 directions (about %g %% off; "
-                "rooms with a window 5 %%)",
+     .advice = {"sky among surfaces: its shadows are those of 256 directions (about %g %% off, "
+                "rooms with a window too)",
                 {TYN_LIMIT_ERROR}},
      .source = "docs/accuracy-of-skies.md, \"Among surfaces\""},
+    {.key = "media that glow among surfaces",
+     .where = {TYN_ABOVE(glow_on_surfaces, 0.05)},
+     .error = glow,
+     .level = TYN_LIMIT_STRAINED,
+     .advice = {"glowing medium among surfaces: its light goes along the lattice's fourteen lines "
+                "(a floor below it 1 to 2 %% off; a room with a window towards it 36 %%)"},
+     .source = "docs/surfaces.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

@@ -34,7 +34,7 @@ static void layout(void **state)
         SIZE(tyn_dispatch, 56),
         SIZE(tyn_tile, 32),
         SIZE(tyn_draw, 64),
-        SIZE(tyn_regime, 192),
+        SIZE(tyn_regime, 200),
         SIZE(tyn_limit, 240),
         SIZE(tyn_method_info, 56),
         SIZE(tyn_setting, 32),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 4);
+    assert_int_equal(TYN_EXTEND_ABI, 5);
     assert_int_equal(changed, 0);
 }
 

@@ -55,6 +55,7 @@ typedef struct tyn_regime { // NAN: not known, and beyond no bound
     // Light: shares of its power.
     double lamps, map;
     double sky_on_surfaces;   // of an environment, where there are surfaces
+    double glow_on_surfaces;  // of media that emit, where there are surfaces
     double surfaces, repeats; // 1: there are surfaces; the medium is periodic
 } tyn_regime;
 
