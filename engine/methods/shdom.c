@@ -80,11 +80,6 @@ static const tyn_pass_desc *const passes[] = {
 // Half-spaces and cubes of the stress suite, 5 bands.
 static double thick(const tyn_regime *r)
 {
-    static double without_surfaces(const tyn_regime *r)
-    {
-        return r->surfaces;
-    }
-
     static const tyn_limit_point curve[] = {{0.15, 0.02}, {1, 0.15}, {3, 0.5}, {100, 0.85}};
     return r->scatterings > 0.05
                ? tyn_limit_along(curve, sizeof curve / sizeof *curve, r->cell_depth)
@@ -109,6 +104,11 @@ static double flat(const tyn_regime *r)
 }
 
 #define STRESS "docs/shdom.md, \"Limits\""
+
+static double without_surfaces(const tyn_regime *r)
+{
+    return r->surfaces;
+}
 
 static const tyn_limit limits[] = {
     TYN_LIMIT_NOT_PERIODIC(STRESS),
