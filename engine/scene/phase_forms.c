@@ -149,6 +149,18 @@ static void fill_angles(const tyn_phase_form *form, double values[TYN_PHASE_NODE
     }
 }
 
+// Over the sphere, as given: linear in the angle between the angles.
+static double integral_of_angles(const tyn_phase_form *form)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i + 1 < form->count; i++) {
+        const double a = form->angles[i], b = form->angles[i + 1];
+        const double slope = (form->values[i + 1] - form->values[i]) / (b - a);
+        sum += form->values[i] * cos(a) - form->values[i + 1] * cos(b) + slope * (sin(b) - sin(a));
+    }
+    return 2 * PI * sum;
+}
+
 // ---- tables -----------------------------------------------------------------------------------
 
 static tyn_result fill_table(const tyn_phase_form *form, const char *of, tyn_phase_table *table,
@@ -171,6 +183,12 @@ static tyn_result fill_table(const tyn_phase_form *form, const char *of, tyn_pha
         table->values[k] = (float)fmax(values[k], 0);
     }
     const double integral = tyn_phase_table_integral(table);
+    if (form->angles && fabs(integral_of_angles(form) - 1) <= tolerance &&
+        !(fabs(integral - 1) <= tolerance)) {
+        FAULT("%s: has a peak that is narrower than the %d angles that are kept of it: of its "
+              "integral of 1 they hold %.6g",
+              of, TYN_PHASE_NODES, integral);
+    }
     if (!(fabs(integral - 1) <= tolerance)) {
         FAULT("%s: its integral over the sphere is %.6g: must be 1, within 1 %%", of, integral);
     }

@@ -206,6 +206,10 @@ static void faults(void **state)
     refuse(&(tyn_phase_form){.count = 3, .angles = short_of, .values = even}, "must be 180");
     refuse(&(tyn_phase_form){.count = 3, .angles = angles, .values = below}, "values[1] = -1");
     refuse(&(tyn_phase_form){.count = 3, .angles = angles, .values = infinite}, "values[1] = inf");
+    // Half of the light in a twentieth of a degree: right as given, but not to be kept.
+    const double glory[] = {0, PI * 179.95 / 180, PI},
+                 spike[] = {0.5 / (4 * PI), 0.5 / (4 * PI), 627000};
+    refuse(&(tyn_phase_form){.count = 3, .angles = glory, .values = spike}, "narrower than the");
     refuse(&(tyn_phase_form){.count = 1, .angles = angles, .values = even}, "at least 2");
     refuse(&(tyn_phase_form){.count = 3}, "one of lobes, legendre");
     refuse(&(tyn_phase_form){.count = 0, .lobes = &half}, "one of lobes, legendre");
