@@ -1,30 +1,37 @@
 // vdb_check.c -- walks over the structure of an OpenVDB file before the library reads it.
 //
 // OpenVDB believes every length and count of a file: a few changed bytes have it read for ever or take all memory, and
-// Blosc is not told where its input ends. Here all of them are held against the bytes that are left. The order is that
-// of OpenVDB 10: io/Archive.cc, MetaMap.cc, math/Maps.h, and readTopology and readBuffers of tree/RootNode.h,
-// InternalNode.h and LeafNode.h. Trees of other types than are listed here are not read, and not walked.
+// Blosc is not told where its input ends. Here all of them are held against the bytes that are left, and the values of
+// inner nodes are unpacked once: where they cannot be, the library forgets the node that it was about to fill, and never
+// frees it. The order is that of OpenVDB 10: io/Archive.cc, MetaMap.cc, math/Maps.h, and readTopology and readBuffers
+// of tree/RootNode.h, InternalNode.h and LeafNode.h. Trees of other types than are listed here are not read, and not
+// walked.
 #include "io/vdb_check.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
+#ifdef TYN_HAVE_BLOSC
+#include <blosc.h>
+#endif
 
 enum {
     OLDEST = 221, // what the library still reads
     NODE_MASK =
         222, // from here on values are compressed by masks, and the flags stand with the grid
     ZIP = 1, // flags of compression
-    ACTIVE_MASK = 2,         //
-    BLOSC = 4,               //
-    LEAF_BITS = 9,           // a leaf has 8^3 voxels,
-    LOWER_BITS = 12,         // the node above it 16^3 children,
-    UPPER_BITS = 15,         // and the one below the root 32^3
-    LEAF_MASK = 64,          // bytes
-    MAX_NAME = 256,          // of what is compared
-    ALL_VALUES = 6,          // how the values of a node are stored: all of them
-    BLOSC_HEADER = 16,       // bytes
-    LEAST_BLOSC = 128,       // bytes, to which the index for delayed loading is filled up
-    SMALLEST_DESCRIPTOR = 36 // bytes
+    ACTIVE_MASK = 2,                //
+    BLOSC = 4,                      //
+    LEAF_BITS = 9,                  // a leaf has 8^3 voxels,
+    LOWER_BITS = 12,                // the node above it 16^3 children,
+    UPPER_BITS = 15,                // and the one below the root 32^3
+    LEAF_MASK = 64,                 // bytes
+    MOST_VALUES = 24 << UPPER_BITS, // bytes, of a node
+    MAX_NAME = 256,                 // of what is compared
+    ALL_VALUES = 6,                 // how the values of a node are stored: all of them
+    BLOSC_HEADER = 16,              // bytes
+    LEAST_BLOSC = 128,              // bytes, to which the index for delayed loading is filled up
+    SMALLEST_DESCRIPTOR = 36        // bytes
 };
 
 typedef struct walk {
@@ -37,6 +44,7 @@ typedef struct walk {
     char detail[MAX_NAME]; // behind it
     uint16_t *leaves;      // active voxels of each leaf, in the order of the file
     uint64_t num_leaves, room;
+    uint8_t *values; // where those of inner nodes are unpacked: MOST_VALUES bytes
 } walk;
 
 // How the values of a tree are stored.
@@ -226,8 +234,22 @@ static void walk_transform(walk *w, bool nested)
 
 // ---- trees ------------------------------------------------------------------------------------
 
+// Whether a block becomes `bytes` of values. Without Blosc here it is the library that will say so.
+static bool unpacks(walk *w, const uint8_t *block, uint64_t size, uint64_t bytes)
+{
+    if (!(w->compression & BLOSC)) {
+        uLongf length = bytes;
+        return uncompress(w->values, &length, block, size) == Z_OK && length == bytes;
+    }
+#ifdef TYN_HAVE_BLOSC
+    return blosc_decompress_ctx(block, w->values, bytes, 1) == (int)bytes;
+#else
+    return true;
+#endif
+}
+
 // readData: as they are, or behind the bytes that they take, negative if they are not compressed.
-static void walk_data(walk *w, uint64_t bytes)
+static void walk_data(walk *w, uint64_t bytes, bool unpack)
 {
     if (!(w->compression & (ZIP | BLOSC))) {
         take(w, bytes);
@@ -245,10 +267,13 @@ static void walk_data(walk *w, uint64_t bytes)
     if (block && w->compression & BLOSC) {
         check_blosc(w, block, (uint64_t)stored, bytes);
     }
+    if (unpack && !w->fault && !unpacks(w, block, (uint64_t)stored, bytes)) {
+        fail(w, "is damaged: the values of a node cannot be unpacked", "");
+    }
 }
 
 // readCompressedValues: of a node with `count` values, `active` of which are.
-static void walk_values(walk *w, const value_type *t, uint32_t count, uint32_t active)
+static void walk_values(walk *w, const value_type *t, uint32_t count, uint32_t active, bool inner)
 {
     static const uint32_t inactive[] = {0, 0, 1, 0, 1, 2}; // values of their own, by the kind
     uint8_t kind = ALL_VALUES;
@@ -267,7 +292,10 @@ static void walk_values(walk *w, const value_type *t, uint32_t count, uint32_t a
             count = active;
         }
     }
-    walk_data(w, (uint64_t)count * (w->half ? t->half_size : t->size));
+    const uint32_t size = w->half ? t->half_size : t->size;
+    if (count > 0 || size == t->size) { // of half floats not even the length of nothing is stored
+        walk_data(w, (uint64_t)count * size, inner);
+    }
 }
 
 static void walk_leaf(walk *w)
@@ -297,7 +325,7 @@ static void walk_node(walk *w, const value_type *t, uint32_t bits)
         return;
     }
     walk_values(w, t, w->version < NODE_MASK ? count - count_bits(children, bytes) : count,
-                count_bits(active, bytes));
+                count_bits(active, bytes), true);
     for (uint32_t i = 0; i < count && !w->fault; i++) {
         if (!(children[i / 8] >> i % 8 & 1)) {
             continue;
@@ -331,7 +359,7 @@ static void walk_tree(walk *w, const value_type *t)
                 fail(w, "has leaves of several buffers, which are not read", "");
             }
         }
-        walk_values(w, t, 1u << LEAF_BITS, w->leaves[i]);
+        walk_values(w, t, 1u << LEAF_BITS, w->leaves[i], false);
     }
 }
 
@@ -419,7 +447,10 @@ static void walk_grid(walk *w, bool has_offsets)
 bool tyn_vdb_check(const void *bytes, size_t size, uint32_t newest, const char *file,
                    const tyn_log *log)
 {
-    walk w = {.bytes = bytes, .size = size};
+    walk w = {.bytes = bytes, .size = size, .values = malloc(MOST_VALUES)};
+    if (!w.values) {
+        fail(&w, "no memory to check it", "");
+    }
     bool has_offsets = false;
     walk_header(&w, newest, &has_offsets);
     walk_metadata(&w);
@@ -431,6 +462,7 @@ bool tyn_vdb_check(const void *bytes, size_t size, uint32_t newest, const char *
         walk_grid(&w, has_offsets);
     }
     free(w.leaves);
+    free(w.values);
     if (w.fault) {
         for (char *c = w.detail; *c; c++) {
             *c = (unsigned char)*c < ' ' ? '?' : *c;

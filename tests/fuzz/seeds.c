@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "nvdb_write.h"
+#include "vdb_files.h"
 
 static const char *root;
 
@@ -138,6 +139,19 @@ static void put_mesh(void)
     put("gltf", "mesh", text, sizeof text - 1);
 }
 
+static void put_vdb(void)
+{
+#ifdef HAVE_VDB_FILES
+    for (int i = 0; i < VDB_FILES; i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/vdb", root);
+        mkdir(path, 0777);
+        snprintf(path, sizeof path, "%s/vdb/%d.vdb", root, i);
+        vdb_file_write(i, path);
+    }
+#endif
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -151,6 +165,7 @@ int main(int argc, char **argv)
     put_hdr();
     put_gltf();
     put_mesh();
+    put_vdb();
     const uint8_t raw[7 + 8] = {2, 2, 0, 2, 0, 2, 0, 1, 2, 3, 4, 5, 6, 7, 8};
     put("raw", "u8", raw, sizeof raw);
     return 0;

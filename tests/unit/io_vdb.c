@@ -4,6 +4,7 @@
 #include <string.h>
 #include "io_test.h"
 #include "skip.h"
+#include "vdb_files.h"
 
 static void real_file(void **state)
 {
@@ -66,8 +67,79 @@ static void broken(void **state)
     }
 }
 
+#ifdef HAVE_VDB_FILES
+
+// Every way of storing values gives the densities that were stored.
+static void stored_values(void **state)
+{
+    (void)state;
+    for (int i = 0; i < VDB_FILES; i++) {
+        tyn_volume v;
+        io_log log;
+        io_log_init(&log);
+        const char *path = io_path("stored.vdb");
+        assert_true(vdb_file_write(i, path));
+        print_message("%d: ", i);
+        assert_int_equal(tyn_volume_load(&v, path, NULL, NULL, &log.log), TYN_OK);
+        assert_int_equal(v.size[0], VDB_NX);
+        assert_int_equal(v.size[1], VDB_NY);
+        assert_int_equal(v.size[2], VDB_NZ);
+        size_t at = 0;
+        for (int z = 0; z < VDB_NZ; z++) {
+            for (int y = 0; y < VDB_NY; y++) {
+                for (int x = 0; x < VDB_NX; x++) { // sixteenths are half floats to the bit
+                    assert_true(v.data[at++] == vdb_file_density(x, y, z));
+                }
+            }
+        }
+        print_message("%zu densities\n", at);
+        tyn_volume_finish(&v);
+    }
+}
+
+// A byte is changed, at places all over the file: it is read, or there is one line. What is not freed then is told by
+// the address sanitizer alone.
+static void damaged(void **state)
+{
+    (void)state;
+    uint32_t refused = 0, unpacked = 0, tried = 0;
+    for (int i = 0; i < VDB_FILES; i++) {
+        void *whole = NULL;
+        size_t size = 0;
+        io_log log;
+        io_log_init(&log);
+        assert_true(vdb_file_write(i, io_path("whole.vdb")));
+        assert_int_equal(tyn_file_read(io_path("whole.vdb"), 1 << 24, &whole, &size, &log.log),
+                         TYN_OK);
+        for (size_t at = 13; at < size; at += 1 + size / 199) {
+            tyn_volume v;
+            ((uint8_t *)whole)[at] ^= 0x5a;
+            io_log_init(&log);
+            const char *bad = io_put("bad.vdb", whole, size);
+            const tyn_result r = tyn_volume_load(&v, bad, NULL, NULL, &log.log);
+            assert_int_equal(log.errors, r ? 1 : 0);
+            assert_int_equal(log.newlines, 0);
+            unpacked += r && strstr(log.last, "cannot be unpacked");
+            refused += r != TYN_OK;
+            tried++;
+            tyn_volume_finish(&v);
+            ((uint8_t *)whole)[at] ^= 0x5a;
+        }
+        free(whole);
+    }
+    print_message("%u of %u refused, %u of them as they were unpacked\n", refused, tried, unpacked);
+    assert_true(refused > 100);
+    assert_true(unpacked > 10);
+}
+
+#endif
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(real_file), cmocka_unit_test(broken)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(real_file), cmocka_unit_test(broken),
+#ifdef HAVE_VDB_FILES
+                                       cmocka_unit_test(stored_values), cmocka_unit_test(damaged)
+#endif
+    };
     return run_cases(tests, NULL, io_test_clean);
 }
