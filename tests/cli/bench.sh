@@ -5,7 +5,7 @@
 needs_device
 
 cat >suite.json <<'END'
-{ "name": "tiny", "size": [24, 24], "reference_spp": 64, "block": 4, "frames": 2, "timing_seconds": 0.2,
+{ "name": "tiny", "size": [24, 24], "reference_spp": 64, "block": 4, "frames": 2, "timing_seconds": 0.2, "warm_seconds": 0.1,
   "max_seconds": 5, "scenes": [ { "name": "cube", "scene": "cube.gltf", "g": 0.5 } ],
   "runs": [ { "method": "pop", "sweep": { "lattice.cells": [8, 16] } }, { "method": "single" } ],
   "baselines": [ { "name": "plain", "method": "path", "settings": { "path.mixture": 0 },

@@ -41,6 +41,9 @@ int bench_key(bench_case *c, const bench_run *run, char key[17])
     const uint32_t numbers[] = {c->suite->frames, c->suite->block, BENCH_RECORD_VERSION};
     hash = text_hash(numbers, sizeof numbers, hash);
     hash = text_hash(&c->suite->timing_seconds, sizeof c->suite->timing_seconds, hash);
+    if (c->suite->warm_seconds > 0) {
+        hash = text_hash(&c->suite->warm_seconds, sizeof c->suite->warm_seconds, hash);
+    }
     // Without those of the device nodes have no ceilings.
     hash = c->suite->ceilings ? hash : hash_text("no ceilings", hash);
     snprintf(key, 17, "%016llx", (unsigned long long)hash);

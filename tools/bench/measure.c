@@ -163,7 +163,25 @@ static int time_frames(measuring *m, bench_time kind, frame_of frame, void *stat
     return code;
 }
 
-// ... of every node.
+// The whole picture again.
+static int again_frame(measuring *m, void *state)
+{
+    (void)state;
+    return renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
+}
+
+// Frames that nobody times.
+static int keep_busy(measuring *m)
+{
+    const double end = app_seconds() + m->c->suite->warm_seconds;
+    int code = EXIT_DONE;
+    while (code == EXIT_DONE && app_seconds() < end) {
+        code = again_frame(m, NULL);
+    }
+    return code;
+}
+
+// Times of every node.
 typedef struct node_times {
     uint32_t most, done;
     double *ms; // `most` for each node
@@ -189,9 +207,11 @@ static int time_light(measuring *m, uint32_t least)
     const bench_suite *suite = m->c->suite;
     node_times nodes = {.most = suite->frames,
                         .ms = calloc((size_t)suite->frames * MAX_NODES, sizeof *nodes.ms)};
-    int code = nodes.ms ? time_frames(m, TIME_LIGHT, light_frame, &nodes, least, suite->frames,
-                                      suite->timing_seconds)
-                        : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    int code = nodes.ms ? keep_busy(m) : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    if (code == EXIT_DONE) {
+        code = time_frames(m, TIME_LIGHT, light_frame, &nodes, least, suite->frames,
+                           suite->timing_seconds);
+    }
     if (code == EXIT_DONE) {
         for (uint32_t k = 0; k < m->num_nodes; k++) {
             m->node_ms[k] = timing_median(nodes.ms + k * nodes.most, nodes.done);
@@ -226,8 +246,9 @@ static int time_camera(measuring *m, uint32_t least, uint32_t most, double secon
 {
     film f = {.view = m->view};
     int code = flicker_open(&f.flicker, m->view.width, m->view.height)
-                   ? film_frame(m, &f)
+                   ? keep_busy(m)
                    : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    code = code == EXIT_DONE ? film_frame(m, &f) : code;
     if (code == EXIT_DONE) {
         code = time_frames(m, TIME_CAMERA, film_frame, &f, least, most, seconds);
     }
@@ -247,7 +268,9 @@ static int same_frame(measuring *m, void *state)
 static int time_unchanged(measuring *m)
 {
     const bench_suite *suite = m->c->suite;
-    const int code = same_frame(m, NULL); // what the camera left is put right first
+    int code = keep_busy(m);
+    code =
+        code == EXIT_DONE ? same_frame(m, NULL) : code; // what the camera left is put right first
     return code == EXIT_DONE ? time_frames(m, TIME_UNCHANGED, same_frame, NULL, 1, suite->frames,
                                            suite->timing_seconds)
                              : code;
@@ -287,7 +310,8 @@ static int time_medium(measuring *m, uint32_t least)
     for (uint32_t i = 0; i < scene->num_media && i < TYN_MAX_MEDIA; i++) {
         before.scales[i] = scene->media[i].density_scale;
     }
-    int code = medium_frame(m, &before);
+    int code = keep_busy(m);
+    code = code == EXIT_DONE ? medium_frame(m, &before) : code;
     if (code == EXIT_DONE) {
         code = time_frames(m, TIME_MEDIUM, medium_frame, &before, least, m->c->suite->frames,
                            m->c->suite->timing_seconds);
@@ -423,12 +447,6 @@ static int measure_frames(measuring *m, const char *label)
     return code;
 }
 
-static int again_frame(measuring *m, void *state)
-{
-    (void)state;
-    return renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
-}
-
 // A method that samples begins anew wherever anything changes: what its frame takes beside the samples is measured
 // with one of them. Of unchanged frames it gives the picture that it has.
 static int time_samples(measuring *m)
@@ -458,6 +476,7 @@ static int measure_samples(measuring *m, const char *label)
     m->view.num_samples = 1; // pipelines and memory
     int code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, false, NULL);
     m->setup_ms = m->renderer.setup_ms;
+    code = code == EXIT_DONE ? keep_busy(m) : code;
     m->view.num_samples = spp;
     if (code == EXIT_DONE) {
         code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, true, label);

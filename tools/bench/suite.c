@@ -438,6 +438,7 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
                                        "frames",
                                        "max_seconds",
                                        "timing_seconds",
+                                       "warm_seconds",
                                        "size",
                                        "ratios",
                                        "ceilings",
@@ -453,6 +454,7 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
     s->block = suite_whole(r, root, "block", 8, 2, 1024); // single pixels come beside it
     s->frames = suite_whole(r, root, "frames", 5, 1, 1000);
     s->timing_seconds = (float)suite_number(r, root, "timing_seconds", 5, 0, 86400);
+    s->warm_seconds = (float)suite_number(r, root, "warm_seconds", 0, 0, 3600);
     s->max_seconds = (float)suite_number(r, root, "max_seconds", 60, 0, 86400);
     const cJSON *ceilings = cJSON_GetObjectItemCaseSensitive(root, "ceilings");
     s->ceilings = !ceilings || cJSON_IsTrue(ceilings);

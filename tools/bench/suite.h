@@ -72,8 +72,9 @@ typedef struct bench_suite {
     uint32_t block;       // beside 1; 2 or more
     uint32_t frames;      // timing frames of each kind
     float timing_seconds; // no further frame of a kind is begun after this long
-    float max_seconds;    // a rendering that would take longer is left out
-    bool ceilings;        // measure those of the device
+    float warm_seconds; // of frames before those of a kind, so that the device's clock has gone up
+    float max_seconds;  // a rendering that would take longer is left out
+    bool ceilings;      // measure those of the device
 } bench_suite;
 
 // `path` NULL = the suite that is built in. `scenes` = folder of the sample scenes. Gives the exit code;
