@@ -73,11 +73,16 @@ static bool set_samples(const chooser *c, candidate *k)
     return predict_candidate(c, k, budget ? lo : hi);
 }
 
-// Errors closer than this are alike: then the faster one is better.
+// Errors of up to so many times the least one are alike: of those the fastest is best.
 static const double alike = 1.02;
 
-// Is `a` the better answer?
-static bool better(const chooser *c, const candidate *a, const candidate *b)
+static double bounded_error(const candidate *k)
+{
+    return k->p.error * error_margin(k);
+}
+
+// Is `a` the better answer, where the least error is `least` (0: not known yet)?
+static bool better(const chooser *c, const candidate *a, const candidate *b, double least)
 {
     const bool budget = !isnan(c->request->budget_ms);
     const bool a_meets = budget ? meets_budget(c, a) : meets_error(c, a);
@@ -86,8 +91,8 @@ static bool better(const chooser *c, const candidate *a, const candidate *b)
         return a_meets;
     }
     const bool by_error = budget == a_meets; // within the budget, or where no error is low enough
-    const double ea = a->p.error * error_margin(a), eb = b->p.error * error_margin(b);
-    if (by_error && (ea > alike * eb || eb > alike * ea)) {
+    const double ea = bounded_error(a), eb = bounded_error(b);
+    if (by_error && fmax(ea, eb) > alike * least) {
         return ea < eb;
     }
     return a->p.ms * ms_margin(a) < b->p.ms * ms_margin(b);
@@ -114,8 +119,8 @@ static bool is_allowed(const choose_request *request, const char *method)
            !(request->without && strstr(request->without, word));
 }
 
-// The best of all runs, without those of a method (NULL: of all). False: there is none, or no memory.
-static bool best_of(const chooser *c, const char *without, candidate *best)
+// The best of all runs, without those of a method (NULL: of all), as `better` has it. False: there is none, or no memory.
+static bool look_for_best(const chooser *c, const char *without, double least, candidate *best)
 {
     const fronts *f = c->fronts;
     *best = (candidate){0};
@@ -135,12 +140,18 @@ static bool best_of(const chooser *c, const char *without, candidate *best)
                 }
             }
             const bool known = k.run->spp ? set_samples(c, &k) : predict_candidate(c, &k, 0);
-            if (known && (!best->run || better(c, &k, best))) {
+            if (known && (!best->run || better(c, &k, best, least))) {
                 *best = k;
             }
         }
     }
     return best->run != NULL;
+}
+
+static bool best_of(const chooser *c, const char *without, candidate *best)
+{
+    return look_for_best(c, without, 0, best) &&
+           look_for_best(c, without, bounded_error(best), best);
 }
 
 bool choose(const fronts *f, const regime *r, const choose_request *request, choice *out)

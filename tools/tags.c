@@ -77,6 +77,12 @@ void tags_hash(const picture_tags *tags, char hash[17])
     cJSON *settings = stats_settings(tags->method, tags->view);
     cJSON_DeleteItemFromObject(settings, "seed");
     cJSON_DeleteItemFromObject(settings, "spp");
+    for (cJSON *at = settings ? settings->child : NULL, *next; at; at = next) {
+        next = at->next;
+        if (strncmp(at->string, "tonemap.", 8) == 0) { // the .exr is before it
+            cJSON_Delete(cJSON_DetachItemViaPointer(settings, at));
+        }
+    }
     char *text = cJSON_PrintUnformatted(settings);
     uint64_t key = bench_scene_hash(tags->scene, tags->view);
     key = text_hash(tyn_version_string(), strlen(tyn_version_string()), key);

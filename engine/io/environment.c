@@ -7,6 +7,7 @@
 #include "base/given.h"
 #include "base/hash.h"
 #include "io/hdr.h"
+#include "io/image.h"
 #include "io/primaries.h"
 
 static tyn_result load_hdr(uint32_t size[2], float **pixels, const char *path, const tyn_log *log)
@@ -21,21 +22,47 @@ static tyn_result load_hdr(uint32_t size[2], float **pixels, const char *path, c
     return r;
 }
 
-// Colours of the file's primaries as those of Rec. 709; what those do not reach is negative, and set to 0 with the rest.
-static void convert(float *pixels, size_t count, const tyn_image_file *image)
+// What the file has of the sphere: its data window in its display window, black where it has nothing.
+static tyn_result paste(uint32_t size[2], float **pixels, const tyn_image_file *image,
+                        const float *const rgb[3], const char *path, const tyn_log *log)
 {
-    const tyn_attribute *c = tyn_image_file_attribute(image, "chromaticities");
-    float m[9];
-    if (!c || c->kind != TYN_ATTRIBUTE_CHROMATICITIES || !tyn_primaries_to_rec709(c->values, m)) {
-        return;
+    const bool part = image->whole_width > 0;
+    const uint32_t w = part ? image->whole_width : image->width;
+    const uint32_t h = part ? image->whole_height : image->height;
+    const int64_t x0 = part ? image->x : 0, y0 = part ? image->y : 0;
+    if (h < 1 || w > TYN_MAX_IMAGE_SIDE || h > TYN_MAX_IMAGE_SIDE ||
+        (uint64_t)w * h > TYN_MAX_PIXELS) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: a display window of %u x %u pixels is too large",
+                      path, w, h);
+        return TYN_ERR_PARAMS;
     }
-    for (size_t i = 0; i < count; i++) {
-        float *p = pixels + 3 * i;
-        const float rgb[3] = {p[0], p[1], p[2]};
-        for (int k = 0; k < 3; k++) {
-            p[k] = m[3 * k] * rgb[0] + m[3 * k + 1] * rgb[1] + m[3 * k + 2] * rgb[2];
+    *pixels = calloc((size_t)w * h, 3 * sizeof **pixels);
+    if (!*pixels) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its pixels", path);
+        return TYN_ERR_MEMORY;
+    }
+    size_t pasted = 0;
+    for (uint32_t y = 0; y < image->height; y++) {
+        for (uint32_t x = 0; x < image->width; x++) {
+            const int64_t to_x = x0 + x, to_y = y0 + y;
+            if (to_x < 0 || to_y < 0 || to_x >= w || to_y >= h) {
+                continue;
+            }
+            float *to = *pixels + 3 * ((size_t)to_y * w + (size_t)to_x);
+            for (int c = 0; c < 3; c++) {
+                to[c] = rgb[c][(size_t)y * image->width + x];
+            }
+            pasted++;
         }
     }
+    if (pasted < (size_t)w * h) {
+        tyn_log_print(log, TYN_LOG_WARN,
+                      "%s: has %.3g %% of its %u x %u pixels: the others are black", path,
+                      100 * (double)pasted / ((double)w * h), w, h);
+    }
+    size[0] = w;
+    size[1] = h;
+    return TYN_OK;
 }
 
 static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, const tyn_log *log)
@@ -48,31 +75,28 @@ static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, c
     const float *rgb[3] = {tyn_image_file_channel(&image, "R"), tyn_image_file_channel(&image, "G"),
                            tyn_image_file_channel(&image, "B")};
     const float *grey = tyn_image_file_channel(&image, "Y");
-    size_t count = (size_t)image.width * image.height;
+    const tyn_attribute *kind = tyn_image_file_attribute(&image, "envmap");
     if (grey && !rgb[0] && !rgb[1] && !rgb[2]) {
         rgb[0] = rgb[1] = rgb[2] = grey;
     }
-    *pixels = malloc(count * 3 * sizeof **pixels);
     if (!rgb[0] || !rgb[1] || !rgb[2]) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: an environment needs channels R, G, B, or Y alone",
                       path);
         r = TYN_ERR_PARAMS;
-    } else if (!*pixels) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its pixels", path);
-        r = TYN_ERR_MEMORY;
+    } else if (kind && kind->kind == TYN_ATTRIBUTE_INTEGER && kind->values[0] != 0) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "%s: is a map of a cube's faces: must be one of latitude and longitude "
+                      "(exrenvmap of OpenEXR makes one)",
+                      path);
+        r = TYN_ERR_PARAMS;
     } else {
-        for (size_t i = 0; i < 3 * count; i++) {
-            (*pixels)[i] = rgb[i % 3][i / 3];
-        }
-        convert(*pixels, rgb[0] == grey ? 0 : count, &image);
+        r = paste(size, pixels, &image, rgb, path, log);
     }
-    size[0] = image.width;
-    size[1] = image.height;
+    const tyn_attribute *c = tyn_image_file_attribute(&image, "chromaticities");
+    if (!r && rgb[0] != grey && c && c->kind == TYN_ATTRIBUTE_CHROMATICITIES) {
+        tyn_pixels_to_rec709(*pixels, (size_t)size[0] * size[1], c->values);
+    }
     tyn_image_file_finish(&image);
-    if (r) {
-        free(*pixels);
-        *pixels = NULL;
-    }
     return r;
 }
 

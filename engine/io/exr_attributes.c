@@ -154,6 +154,11 @@ tyn_result tyn_exr_read_attributes(exr_context_t context, tyn_image_file *image)
             is_required(a->name) || strlen(a->name) >= sizeof image->attributes->name) {
             continue;
         }
+        const double envmap = a->uc; // how directions lie in a map, an integer here
+        if (a->type == EXR_ATTR_ENVMAP &&
+            !tyn_image_file_set_numbers(image, a->name, TYN_ATTRIBUTE_INTEGER, &envmap)) {
+            return TYN_ERR_MEMORY;
+        }
         for (int k = 0; k < NUM_KINDS; k++) {
             if (kinds[k].type == a->type && !take(image, a, k)) {
                 return TYN_ERR_MEMORY;
@@ -177,6 +182,9 @@ static exr_result_t write_attribute(exr_context_t context, const tyn_attribute *
     case TYN_ATTRIBUTE_TEXT:
         return exr_attr_set_string(context, 0, a->name, a->text ? a->text : "");
     case TYN_ATTRIBUTE_INTEGER:
+        if (strcmp(a->name, "envmap") == 0) {
+            return exr_attr_set_envmap(context, 0, a->name, (exr_envmap_t)a->values[0]);
+        }
         return exr_attr_set_int(context, 0, a->name, (int32_t)a->values[0]);
     case TYN_ATTRIBUTE_NUMBER:
         return exr_attr_set_float(context, 0, a->name, (float)a->values[0]);

@@ -79,16 +79,36 @@ tyn_result tyn_gltf_find_json(const uint8_t *bytes, size_t size, const char *fil
     return TYN_OK;
 }
 
-static size_t count_external_buffers(const json_doc *doc)
+// Paths of the buffers that are files, freed by free_paths.
+static tyn_result buffer_files(const json_doc *doc, char ***paths, size_t *count)
 {
-    size_t count = 0;
-    const cJSON *buffer;
-    cJSON_ArrayForEach(buffer, tyn_json_member(doc->root, "buffers"))
+    const cJSON *buffers = tyn_json_member(doc->root, "buffers"), *buffer;
+    const int most = cJSON_GetArraySize(buffers);
+    *count = 0;
+    *paths = calloc((size_t)most + 1, sizeof **paths);
+    if (!*paths) {
+        return TYN_ERR_MEMORY;
+    }
+    cJSON_ArrayForEach(buffer, buffers)
     {
         const cJSON *uri = tyn_json_member(buffer, "uri");
-        count += uri && strncmp(uri->valuestring, "data:", 5) != 0;
+        if (uri && strncmp(uri->valuestring, "data:", 5) != 0) {
+            (*paths)[*count] = tyn_uri_path(doc, uri);
+            if (!(*paths)[*count]) {
+                return TYN_ERR_PARAMS;
+            }
+            ++*count;
+        }
     }
-    return count;
+    return TYN_OK;
+}
+
+static void free_paths(char **paths, size_t count)
+{
+    for (size_t i = 0; paths && i < count; i++) {
+        free(paths[i]);
+    }
+    free(paths);
 }
 
 // tinygltf drops what it does not like, for instance an index written as 1.0: nothing may be
@@ -387,8 +407,12 @@ tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, cons
         r = tyn_gltf_check(&doc, glb);
     }
     if (!r) {
-        gltf_source source = {bytes, size, glb, count_external_buffers(&doc), directory, file};
-        r = directory ? gltf_model_read(&model, &source, log) : TYN_ERR_MEMORY;
+        gltf_source source = {bytes, size, glb, NULL, 0, directory, file};
+        char **paths = NULL;
+        r = directory ? buffer_files(&doc, &paths, &source.num_buffer_files) : TYN_ERR_MEMORY;
+        source.buffer_files = paths;
+        r = r ? r : gltf_model_read(&model, &source, log);
+        free_paths(paths, source.num_buffer_files);
     }
     if (!r) {
         r = check_model(&model, &doc);

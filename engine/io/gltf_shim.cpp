@@ -11,10 +11,17 @@
 namespace {
 
 // Buffers come first in tinygltf's order; once they are read, what it asks for are images: they are not
-// there. Those that materials use are read later (gltf_texture.c).
+// there. Those that materials use are read later (gltf_texture.c). Names are those of the source: what tinygltf
+// makes of a uri has a space for '+', and lacks a '%' that escapes nothing.
 struct files {
-    size_t buffers_left;
-    std::string fault; // why a buffer could not be read
+    const gltf_source *source;
+    size_t next;       // buffer that is asked for
+    std::string fault; // why one could not be read
+
+    bool is_buffer() const
+    {
+        return next < source->num_buffer_files;
+    }
 };
 
 void keep_fault(void *user, tyn_log_level, const char *message)
@@ -24,7 +31,7 @@ void keep_fault(void *user, tyn_log_level, const char *message)
 
 bool file_exists(const std::string &, void *user)
 {
-    return static_cast<files *>(user)->buffers_left > 0;
+    return static_cast<files *>(user)->is_buffer();
 }
 
 std::string same_path(const std::string &path, void *)
@@ -32,16 +39,17 @@ std::string same_path(const std::string &path, void *)
     return path;
 }
 
-bool read_file(std::vector<unsigned char> *out, std::string *, const std::string &path, void *user)
+bool read_file(std::vector<unsigned char> *out, std::string *, const std::string &, void *user)
 {
     files *f = static_cast<files *>(user);
     void *data = nullptr;
     size_t size = 0;
     const tyn_log log = {keep_fault, f, TYN_LOG_ERROR};
-    if (f->buffers_left == 0 || tyn_file_read(path.c_str(), 1ull << 31, &data, &size, &log)) {
+    if (!f->is_buffer() ||
+        tyn_file_read(f->source->buffer_files[f->next], 1ull << 31, &data, &size, &log)) {
         return false;
     }
-    f->buffers_left--;
+    f->next++;
     out->assign(static_cast<unsigned char *>(data), static_cast<unsigned char *>(data) + size);
     std::free(data);
     return true;
@@ -163,7 +171,7 @@ tyn_result read_model(gltf_model *model, const gltf_source *source, const tyn_lo
     tinygltf::TinyGLTF reader;
     tinygltf::Model parsed;
     std::string error, warning;
-    files state = {source->num_external_buffers, std::string()};
+    files state = {source, 0, std::string()};
     reader.SetImageLoader(skip_image, nullptr);
     reader.SetFsCallbacks({file_exists, same_path, read_file, nullptr, &state});
     unsigned size = unsigned(source->size);

@@ -40,9 +40,10 @@ typedef struct gltf_source {
     const void *bytes; // have passed tyn_gltf_check
     size_t size;       // < 2^31
     bool glb;
-    size_t num_external_buffers; // with a uri that is not data
-    const char *directory;       // where uris start
-    const char *file;            // for messages
+    char *const *buffer_files; // paths of the buffers with a uri that is not data, in their order
+    size_t num_buffer_files;
+    const char *directory; // where uris start
+    const char *file;      // for messages
 } gltf_source;
 
 // Buffers are read and their sizes compared; images are left alone. No exception leaves; faults are one

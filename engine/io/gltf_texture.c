@@ -1,9 +1,11 @@
 // gltf_texture.c -- textures of a glTF file, read when a material wants them.
 #include "io/gltf_texture.h"
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include "io/picture.h"
 #include "io/uri.h"
 
@@ -112,8 +114,9 @@ static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture
     tyn_capture capture;
     tyn_capture_init(&capture);
     tyn_result r = tyn_file_read(path, 1ull << 31, &bytes, &size, &capture.log);
+    const bool there = access(path, F_OK) == 0 || (errno != ENOENT && errno != ENOTDIR);
     free(path);
-    if (r == TYN_ERR_IO) {
+    if (r == TYN_ERR_IO && !there) {
         *missing = true;
         return grey(out);
     }

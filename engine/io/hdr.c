@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/image.h"
+#include "io/primaries.h"
 
 typedef struct reader {
     const uint8_t *at, *end;
@@ -32,7 +33,28 @@ static bool next_line(reader *r, char *line, size_t room)
     return r->at < r->end && r->at++;
 }
 
-static tyn_result read_header(reader *r, uint32_t size[2], double *exposure)
+// What the header says of the pixels.
+typedef struct coding {
+    double exposure;
+    double primaries[8]; // x and y of red, green, blue, white
+    bool has_primaries;
+} coding;
+
+static tyn_result read_primaries(reader *r, const char *text, coding *c)
+{
+    for (int i = 0; i < 8; i++) {
+        char *end;
+        c->primaries[i] = strtod(text, &end);
+        if (end == text || !isfinite(c->primaries[i])) {
+            return fault(r, "PRIMARIES must be eight numbers");
+        }
+        text = end;
+    }
+    c->has_primaries = true;
+    return TYN_OK;
+}
+
+static tyn_result read_header(reader *r, uint32_t size[2], coding *c)
 {
     char line[256];
     bool format = false;
@@ -41,7 +63,7 @@ static tyn_result read_header(reader *r, uint32_t size[2], double *exposure)
         (strncmp(line, "#?RADIANCE", 10) != 0 && strncmp(line, "#?RGBE", 6) != 0)) {
         return fault(r, "must start with #?RADIANCE or #?RGBE");
     }
-    *exposure = 1.0;
+    *c = (coding){.exposure = 1};
     for (;;) {
         if (!next_line(r, line, sizeof line)) {
             return fault(r, "the header does not end");
@@ -55,13 +77,18 @@ static tyn_result read_header(reader *r, uint32_t size[2], double *exposure)
                 return fault(r, "FORMAT must be 32-bit_rle_rgbe");
             }
         } else if (strncmp(line, "EXPOSURE=", 9) == 0) {
-            *exposure *= strtod(line + 9, NULL);
+            c->exposure *= strtod(line + 9, NULL);
+        } else if (strncmp(line, "PRIMARIES=", 10) == 0) {
+            const tyn_result result = read_primaries(r, line + 10, c);
+            if (result) {
+                return result;
+            }
         }
     }
     if (!format) {
         return fault(r, "FORMAT=32-bit_rle_rgbe is missing");
     }
-    if (!(*exposure > 1e-30 && *exposure < 1e30)) {
+    if (!(c->exposure > 1e-30 && c->exposure < 1e30)) {
         return fault(r, "EXPOSURE must be > 0");
     }
     if (!next_line(r, line, sizeof line) || sscanf(line, "-Y %d +X %d", &height, &width) != 2) {
@@ -145,9 +172,9 @@ tyn_result tyn_hdr_parse(uint32_t size[2], float **pixels, const void *bytes, si
                          const char *file, const tyn_log *log)
 {
     reader r = {bytes, (const uint8_t *)bytes + num_bytes, file, log};
-    double exposure;
+    coding c;
     *pixels = NULL;
-    tyn_result result = read_header(&r, size, &exposure);
+    tyn_result result = read_header(&r, size, &c);
     if (result) {
         return result;
     }
@@ -166,9 +193,9 @@ tyn_result tyn_hdr_parse(uint32_t size[2], float **pixels, const void *bytes, si
         for (uint32_t x = 0; x < size[0]; x++) {
             const uint8_t *p = line + 4 * x;
             float *rgb = out + 3 * ((size_t)y * size[0] + x);
-            double scale = p[3] ? ldexp(1.0 / exposure, p[3] - 136) : 0.0;
-            for (int c = 0; c < 3; c++) {
-                rgb[c] = (float)(p[c] * scale);
+            double scale = p[3] ? ldexp(1.0 / c.exposure, p[3] - 136) : 0.0;
+            for (int k = 0; k < 3; k++) {
+                rgb[k] = (float)(p[k] * scale);
             }
         }
     }
@@ -176,6 +203,9 @@ tyn_result tyn_hdr_parse(uint32_t size[2], float **pixels, const void *bytes, si
     if (result) {
         free(out);
         return result;
+    }
+    if (c.has_primaries) {
+        tyn_pixels_to_rec709(out, (size_t)size[0] * size[1], c.primaries);
     }
     *pixels = out;
     return TYN_OK;

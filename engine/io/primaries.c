@@ -103,3 +103,18 @@ bool tyn_primaries_to_rec709(const double c[8], float m[9])
     }
     return true;
 }
+
+void tyn_pixels_to_rec709(float *pixels, size_t count, const double c[8])
+{
+    float m[9];
+    if (!tyn_primaries_to_rec709(c, m)) {
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        float *p = pixels + 3 * i;
+        const float rgb[3] = {p[0], p[1], p[2]};
+        for (int k = 0; k < 3; k++) {
+            p[k] = m[3 * k] * rgb[0] + m[3 * k + 1] * rgb[1] + m[3 * k + 2] * rgb[2];
+        }
+    }
+}

@@ -190,6 +190,35 @@ static void other_wishes(void **state)
     assert_string_equal(c.nearest[0]->name, "thick");
 }
 
+// Errors of 1, 1.019 and 1.038 %, each twice as fast as the one before: the second is within 2 % of the least, the third
+// is not, in whatever order they were measured.
+static void alike_errors(void **state)
+{
+    (void)state;
+    static const char *const orders[] = {"012", "210", "120"};
+    static const char *const runs[] = {
+        RUN("pop", "", 0, 0.01, 0.01, 8, 0),
+        RUN("pop", "\"lattice.cells\": 8", 0, 0.01019, 0.01019, 4, 0),
+        RUN("pop", "\"lattice.cells\": 4", 0, 0.01038, 0.01038, 2, 0),
+    };
+    fronts kept = f;
+    for (size_t i = 0; i < ARRAY_SIZE(orders); i++) {
+        char content[2048];
+        const char *o = orders[i];
+        snprintf(content, sizeof content,
+                 "{\"schema\": \"tyndall-fronts\", \"version\": 1, \"device\": {\"name\": "
+                 "\"d\"}, \"scenes\": [{\"name\": \"thin\", \"size\": [100, 100], \"regime\": %s, "
+                 "\"runs\": [%s,%s,%s]}]}",
+                 REGIME("0.1"), runs[o[0] - '0'], runs[o[1] - '0'], runs[o[2] - '0']);
+        assert_int_equal(open_text(content), EXIT_DONE);
+        choose_request request = ask(NAN, 1000);
+        choice c = in_thin(&request);
+        assert_string_equal(c.run->key, "pop lattice.cells=8");
+        fronts_finish(&f);
+    }
+    f = kept;
+}
+
 // Between two scenes a prediction is between theirs, and its margin is wider.
 static void between_scenes(void **state)
 {
@@ -411,6 +440,7 @@ int main(void)
         cmocka_unit_test(error_and_time),
         cmocka_unit_test(what_cannot_be_had),
         cmocka_unit_test(other_wishes),
+        cmocka_unit_test(alike_errors),
         cmocka_unit_test(between_scenes),
         cmocka_unit_test(from_a_report),
         cmocka_unit_test(pop_where_it_breaks),

@@ -118,6 +118,7 @@ near "$(value rel_l1)" 0 1e-6 "128 samples, and 64 and 64"
 cp more.exr kept.exr
 works render $cube --method path --spp 100 -o more.exr --resume # has them already
 refuses 2 "'more.png' is not made from it" render $cube --method path --spp 100 -o more.png -o more.exr --resume
+works render $cube --method path --spp 129 -o more.exr --resume --tonemap linear --exposure 1 # the .exr is before it
 works render $cube --method path --spp 130 -o more.exr -o more.png --resume --stats more.json
 works render $cube --method path --spp 130 -o more.exr -o more.png --resume --stats more.json
 rm more.png more.json

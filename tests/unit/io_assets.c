@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include "gltf_file.h"
 #include "numbers.h"
 
@@ -311,6 +313,15 @@ static void pictures(void **state)
                      1);
     assert_int_equal(warnings_with(&s, "EXT_texture_webp"), 1);
     tyn_scene_finish(&s);
+    mkdir(io_path("folder.png"), 0700); // it is there, and no picture
+    tyn_scene none;
+    io_log log;
+    io_log_init(&log);
+    const char *path = gltf_file_put(
+        &f, "folder", PICTURED("{'source': 0}, {'source': 0}], 'images': [{'uri': 'folder.png'}]"));
+    assert_int_equal(tyn_scene_load_moment(&none, path, NULL, NULL, &log.log), TYN_ERR_IO);
+    assert_non_null(strstr(log.last, "is a folder: must be a regular file"));
+    rmdir(io_path("folder.png"));
     io_put("w.webp", "RIFF\x10\0\0\0WEBPVP8 ", 16);
     refused(gltf_file_put(&f, "webp",
                           PICTURED("{'source': 0}, {'source': 0}], 'images': "

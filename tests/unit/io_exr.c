@@ -239,6 +239,49 @@ static void environments(void **state)
     free(env.data);
 }
 
+// The lower right quarter of a map is one of the whole sphere: the others are black. A map of a cube's faces is refused.
+static void partial_maps(void **state)
+{
+    float values[64 * 32];
+    tyn_channel channels[1] = {{"Y", values}};
+    tyn_image_file image = {64, 32, 1, channels, .x = 64, .y = 32};
+    const double latitude = 0, cube = 1;
+    tyn_environment env = {0};
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    image.whole_width = 128;
+    image.whole_height = 64;
+    for (int i = 0; i < 64 * 32; i++) {
+        values[i] = (float)(i + 1);
+    }
+    const char *path = io_path("part.exr");
+    assert_true(tyn_image_file_set_numbers(&image, "envmap", TYN_ATTRIBUTE_INTEGER, &latitude));
+    assert_int_equal(tyn_exr_write(&image, path, true, &log.log), TYN_OK);
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_OK);
+    assert_non_null(strstr(log.last, "has 25 % of its 128 x 64 pixels"));
+    assert_true(env.size[0] == 128 && env.size[1] == 64);
+    for (int y = 0; y < 64; y++) {
+        for (int x = 0; x < 128; x++) {
+            const float right = x < 64 || y < 32 ? 0 : values[64 * (y - 32) + x - 64];
+            assert_true(env.data[3 * (128 * y + x)] == right);
+        }
+    }
+    image.x = -32; // beyond the sphere on one side
+    image.y = 40;
+    assert_int_equal(tyn_exr_write(&image, path, true, &log.log), TYN_OK);
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_OK);
+    assert_true(env.data[3 * 128 * 40] == values[32] &&
+                env.data[3 * (128 * 63 + 31)] == values[64 * 23 + 63]);
+    io_log_init(&log);
+    assert_true(tyn_image_file_set_numbers(&image, "envmap", TYN_ATTRIBUTE_INTEGER, &cube));
+    assert_int_equal(tyn_exr_write(&image, path, true, &log.log), TYN_OK);
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_ERR_PARAMS);
+    assert_non_null(strstr(log.last, "a cube's faces"));
+    free(env.data);
+    free(image.attributes);
+}
+
 // A map in the primaries of ACEScg: white stays white, and colours are those of the matrix that ACES publishes, by Bradford's
 // adaptation.
 static void primaries(void **state)
@@ -536,6 +579,7 @@ int main(void)
                                        cmocka_unit_test(saturation),
                                        cmocka_unit_test(environments),
                                        cmocka_unit_test(primaries),
+                                       cmocka_unit_test(partial_maps),
                                        cmocka_unit_test(kinds),
                                        cmocka_unit_test(broken),
                                        cmocka_unit_test(damaged_piz),

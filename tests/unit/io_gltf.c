@@ -406,15 +406,16 @@ static void containers(void **state)
     (void)state;
     io_log_init(&log);
     io_put("data.bin", "123456789012", 12);
+    io_put("a+b 50%off.bin", "123456789012", 12);
     const char *buffers =
         "'buffers': [{'byteLength': 12%s}], 'bufferViews': [{'buffer': 0, 'byteLength': 12}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 1, 'type': 'VEC3'}],"
         "'meshes': [{'primitives': [{'mode': 0, 'attributes': {'POSITION': 0}}]}], 'nodes': "
         "[{'mesh': 0}]}";
-    const char *uris[] = {", 'uri': 'data.bin'",
+    const char *uris[] = {", 'uri': 'data.bin'", ", 'uri': 'a+b%2050%off.bin'",
                           ", 'uri': 'data:application/octet-stream;base64,AAAAAAAAAAAAAAAA'"};
     char text[2048], part[1024];
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         snprintf(part, sizeof part, buffers, uris[i]);
         snprintf(text, sizeof text, ASSET ", 'images': [{'uri': 'none.png'}], %s", part);
         load(&s, quoted(text));

@@ -5,6 +5,7 @@
 #include <string.h>
 #include "io/hdr.h"
 #include "io_test.h"
+#include "numbers.h"
 
 #define HEAD "#?RADIANCE\n# a comment\nFORMAT=32-bit_rle_rgbe\n\n"
 
@@ -59,6 +60,23 @@ static void encodings(void **state)
     free(p);
 }
 
+// Red of Rec. 2020: 1.6605 of red, and less of the others than Rec. 709 has (ITU-R BT.2087, inverted).
+static void primaries(void **state)
+{
+    uint32_t size[2];
+    (void)state;
+    const uint8_t red[] = {128, 0, 0, 129};
+    file f =
+        make("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nPRIMARIES= 0.708 0.292 0.170 0.797 0.131 0.046 "
+             "0.3127 0.3290\n\n-Y 1 +X 1\n",
+             red, sizeof red);
+    float *p = parse(&f, size);
+    assert_near(p[0], 1.6605, 1e-3);
+    assert_near(p[1], -0.1246, 1e-3);
+    assert_near(p[2], -0.0182, 1e-3);
+    free(p);
+}
+
 static void broken(void **state)
 {
     const uint8_t pixels[32] = {2, 2, 0, 8, 136, 7};
@@ -105,6 +123,7 @@ static void broken(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(encodings), cmocka_unit_test(broken)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(encodings), cmocka_unit_test(primaries),
+                                       cmocka_unit_test(broken)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }
