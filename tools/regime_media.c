@@ -102,7 +102,8 @@ bool regime_media_at(const regime_media *media, const double world[3], regime_co
             out->scaled[c] += sigma_a + (1 - forward) * sigma_s;
             out->emission[c] += emission;
             if (sigma_s > 0) {
-                out->least_g = fmin(out->least_g, g);
+                const double back = m->phase[c].backward; // of a peak beside a forward one
+                out->least_g = fmin(out->least_g, back > 0 ? fmin(g, -back) : g);
                 out->most_g = fmax(out->most_g, g);
             }
             found |= density > 0 ? m->sigma_s[c] + m->sigma_a[c] > 0 || m->emission[c] > 0

@@ -114,8 +114,8 @@ static void add_channel(dense *d, float s, float a, tyn_phase phase, float densi
     d->transport = fmaxf(d->transport, (1 - g) * s + a);
     d->scattering = fmaxf(d->scattering, (1 - f) * s);
     d->absorption = fmaxf(d->absorption, a);
-    if (s > 0) {
-        d->least_g = fminf(d->least_g, g);
+    if (s > 0) { // a backward peak beside a forward one counts by its height
+        d->least_g = fminf(d->least_g, phase.backward > 0 ? fminf(g, -phase.backward) : g);
         d->most_g = fmaxf(d->most_g, g);
     }
 }

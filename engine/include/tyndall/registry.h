@@ -43,8 +43,9 @@ typedef struct tyn_regime { // NAN: not known, and beyond no bound
     double all_scatterings; // not scaled
     double thickness;       // scaled mean free paths through the shortest side
     double albedo, scaled_albedo;
-    double g, least_g, most_g; // mean cosines
-    double again;              // share of the scattered light that has scattered more than once
+    // Mean cosines; least_g also that of a lobe with as high a peak straight back.
+    double g, least_g, most_g;
+    double again; // share of the scattered light that has scattered more than once
     // Of the lattice of the method; 0: it has none.
     double cell_depth;     // scaled mean free paths across a cell
     double cell_transport; // transport mean free paths
