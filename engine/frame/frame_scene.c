@@ -600,6 +600,11 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     } else if (surfaces->hash) {
         build_void(out, extent);
     }
+    for (int a = 0; a < 3; a++) { // without media M has the axes of the world
+        const bool most = !scene->num_shapes && surfaces->hash;
+        out->near_lo[a] = most ? surfaces->most_lo[a] - (float)m.origin[a] : 0;
+        out->near_hi[a] = most ? surfaces->most_hi[a] - (float)m.origin[a] : out->medium.extent[a];
+    }
     build_shapes(out, scene, &m);
     out->majorant = majorant_of(out, scene);
     build_lights(out, scene, &m);

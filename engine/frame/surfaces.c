@@ -1,5 +1,6 @@
 // surfaces.c -- mip chains of textures, made when surfaces change.
 #include "frame/surfaces.h"
+#include "frame/surface_most.h"
 #include "frame/surface_tables.h"
 #include "light/shadow_cull.h"
 #include <math.h>
@@ -189,6 +190,11 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
         return result;
     }
     tyn_surfaces_bounds(surfaces, data->lo, data->hi);
+    if (hash && !tyn_surfaces_most(surfaces, data->most_lo, data->most_hi)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "no memory for the surfaces");
+        tyn_surface_data_finish(data);
+        return TYN_ERR_MEMORY;
+    }
     data->leaf.count = surfaces->num_triangles;
     memcpy(data->leaf.lo, data->lo, sizeof data->leaf.lo);
     memcpy(data->leaf.hi, data->hi, sizeof data->leaf.hi);

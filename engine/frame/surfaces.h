@@ -7,6 +7,7 @@
 typedef struct tyn_surface_data {
     uint64_t hash; // 0: no surfaces
     float lo[3], hi[3];
+    float most_lo[3], most_hi[3]; // world box of most triangles
     // At least one element, so that there is always a buffer to bind.
     struct surface_texture *textures;
     uint32_t num_textures;

@@ -23,13 +23,15 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
 
 bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides)
 {
-    const float *extent = frame->medium.extent;
-    const float margin = sides * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
-    float lo[3], hi[3];
+    const float *from = frame->near_lo, *to = frame->near_hi;
+    float lo[3], hi[3], longest = 0;
     bool beyond = false;
     tyn_surfaces_box(frame, lo, hi);
     for (int a = 0; a < 3; a++) {
-        beyond = beyond || lo[a] < -margin || hi[a] > extent[a] + margin;
+        longest = fmaxf(longest, to[a] - from[a]);
+    }
+    for (int a = 0; a < 3; a++) {
+        beyond = beyond || lo[a] < from[a] - sides * longest || hi[a] > to[a] + sides * longest;
     }
     return beyond;
 }
@@ -156,6 +158,8 @@ static void add_rsm(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_
     if (!frame->empty) {
         memcpy(params.extent, frame->medium.extent, sizeof params.extent);
     }
+    memcpy(params.near_lo, frame->near_lo, sizeof params.near_lo);
+    memcpy(params.near_hi, frame->near_hi, sizeof params.near_hi);
     const tyn_surfaces *surfaces = &job->scene->surfaces;
     for (uint32_t i = 0; i < views.num_views; i++) {
         const tyn_shadow_view *v = &views.views[i];
@@ -202,6 +206,8 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     params.num_triangles = job->frame->num_triangles;
     params.emitters = emitters(&job->scene->surfaces);
     params.bounces = carry_all(job, s);
+    memcpy(params.near_lo, job->frame->near_lo, sizeof params.near_lo);
+    memcpy(params.near_hi, job->frame->near_hi, sizeof params.near_hi);
     s->surface_light.bounces = params.bounces;
     if (params.count == 0) {
         return;

@@ -80,6 +80,8 @@ void tyn_rsm_add_sky(tyn_rsm_params *p, uint32_t fan, const uint32_t cells[3])
     p->sky = (struct rsm_sky_args){
         .texels = texels, .offset = {0, p->size[1]}, .fan = fan, .triangles = p->num_triangles};
     memcpy(p->sky.extent, p->extent, sizeof p->sky.extent);
+    memcpy(p->sky.near_lo, p->near_lo, sizeof p->sky.near_lo);
+    memcpy(p->sky.near_hi, p->near_hi, sizeof p->sky.near_hi);
     if (cells) {
         memcpy(p->sky.cells, cells, sizeof p->sky.cells);
     }

@@ -15,8 +15,9 @@ typedef struct tyn_rsm_params {
     // Set by the method:
     uint32_t size[2]; // of the atlas, texels
     uint32_t num_triangles;
-    float extent[3];    // medium_block.extent, m; 0 without media
-    uint32_t num_tiles; // by tyn_rsm_add
+    float extent[3];              // medium_block.extent, m; 0 without media
+    float near_lo[3], near_hi[3]; // tyn_frame_scene.near_lo, near_hi, m
+    uint32_t num_tiles;           // by tyn_rsm_add
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
     struct rsm_draw_args draws[TYN_RSM_MAX_TILES];
     struct surface_range drawn[TYN_RSM_MAX_TILES][TYN_SURFACE_RANGES];
@@ -33,8 +34,8 @@ void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t k
                  const tyn_vec4 clip[4], uint32_t light, float texel);
 
 // Adds the places under the sky below all maps: two tiles, of fronts and of backs, as lights TYN_RSM_SKY and the next. `fan`: of
-// the sky's directions; `cells`: of the lattice that has columns, or NULL if nothing dims the sky. After num_triangles, extent
-// and size.
+// the sky's directions; `cells`: of the lattice that has columns, or NULL if nothing dims the sky. After num_triangles, extent,
+// near_lo, near_hi and size.
 void tyn_rsm_add_sky(tyn_rsm_params *params, uint32_t fan, const uint32_t cells[3]);
 
 // clang-format off

@@ -1,20 +1,20 @@
-// rsm_sky_places.glsl -- places spread over the surfaces, most of them near the medium.
+// rsm_sky_places.glsl -- places spread over the surfaces, most of them near the box that pictures are of.
 //
-// A ground of a kilometre has nearly all of the area that the sky shines on, and what lights the medium is the part within a few
+// A ground of a kilometre has nearly all of the area that the sky shines on, and what lights the box is the part within a few
 // times its size: the density of places falls with the distance d from a box of longest side L as 1 / (1 + (d / L)^2). Within a
 // triangle places follow a curve (vpl_elements.glsl: Sierpinski's) that halves it again and again, and of two halves each gets
 // its share by where its middle is ("hierarchical sample warping", Clarberg et al. 2005).
 #ifndef RSM_SKY_PLACES_GLSL
 #define RSM_SKY_PLACES_GLSL
+#include "shaders/light/near_box.glsl"
 
 const int RSM_SKY_HALVINGS = 20;
 
-// Of a point (M); 1 in the box, and everywhere without media.
+// Of a point (M); 1 in the box.
 float rsm_sky_near(vec3 p)
 {
-    float size = max(args.extent.x, max(args.extent.y, args.extent.z));
-    float away = distance(p, clamp(p, vec3(0.0), args.extent)) / max(size, 1e-20);
-    return size > 0.0 ? 1.0 / (1.0 + away * away) : 1.0;
+    float away = near_box_away(p, args.near_lo, args.near_hi);
+    return 1.0 / (1.0 + away * away);
 }
 
 // A triangle whose longest side goes from `from` to `to`.
@@ -42,9 +42,9 @@ vec3 rsm_sky_middle(rsm_sky_piece t)
 // Is all of a piece about as near as its middle?
 bool rsm_sky_even(rsm_sky_piece t)
 {
-    float size = max(args.extent.x, max(args.extent.y, args.extent.z));
-    vec3 p = rsm_sky_middle(t);
-    return size <= 0.0 || distance(t.from, t.to) < 0.5 * (size + distance(p, clamp(p, vec3(0.0), args.extent)));
+    float size = near_box_size(args.near_lo, args.near_hi);
+    float away = near_box_away(rsm_sky_middle(t), args.near_lo, args.near_hi);
+    return size <= 0.0 || distance(t.from, t.to) < 0.5 * size * (1.0 + away);
 }
 
 // What a triangle counts for, m^2: the integral of nearness, halving what is nearest.

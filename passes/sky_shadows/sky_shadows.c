@@ -3,6 +3,7 @@
 #include "sky_shadows_frames.comp.h"
 #include "sky_shadows_vertex.vert.h"
 #include <stddef.h>
+#include <string.h>
 
 static const tyn_port ports[] = {SKY_SHADOWS_PORTS(TYN_PORT_ROW)};
 
@@ -26,8 +27,9 @@ static const tyn_param params_table[] = {
     {"texels", TYN_PARAM_INT, offsetof(tyn_sky_shadows_params, texels), 256, 16, 512, "texels",
      "side of the depth map of each direction of the sky", NULL},
     {"reach", TYN_PARAM_FLOAT, offsetof(tyn_sky_shadows_params, reach), 3, 0, 1000, "",
-     "surfaces that stand more than so many times the longest side of the media's box beyond it "
-     "have coarser maps, of all surfaces; 0: one map of all",
+     "surfaces that stand more than so many times the longest side of the media's box (without "
+     "media: that of most triangles) beyond it have coarser maps, of all surfaces; 0: one map of "
+     "all",
      NULL},
 };
 
@@ -68,8 +70,10 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_sky_shadows_params *p = params;
     const uint32_t maps = num_maps(p), side = across(p), texels = (uint32_t)p->texels;
-    const struct sky_frames_args args = {
+    struct sky_frames_args args = {
         .across = side, .texels = (float)texels, .reach = p->reach, .count = p->count};
+    memcpy(args.near_lo, p->near_lo, sizeof args.near_lo);
+    memcpy(args.near_hi, p->near_hi, sizeof args.near_hi);
     TYN_DISPATCH(r, .kernel = KERNEL_FRAMES, .cells = {maps, 1, 1}, .args = &args);
     tyn_tile tiles[MAX_MAPS];
     struct sky_draw_args draws[MAX_MAPS];

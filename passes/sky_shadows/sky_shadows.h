@@ -13,12 +13,12 @@ typedef struct tyn_sky_shadows_params {
     // Set by the method:
     uint32_t count; // directions at most
     bool wide;      // surfaces stand beyond the reach: each direction has a second map, of all
+    float near_lo[3], near_hi[3]; // tyn_frame_scene.near_lo, near_hi
     uint32_t num_triangles;
 } tyn_sky_shadows_params;
 
 // clang-format off
 #define SKY_SHADOWS_PORTS(X) \
-    X(SKY_SHADOWS, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(SKY_SHADOWS, SURFACES, surfaces, IN, BUFFER, "struct surface_block"), \
     X(SKY_SHADOWS, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
     X(SKY_SHADOWS, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \

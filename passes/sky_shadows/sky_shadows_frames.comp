@@ -1,20 +1,20 @@
 // sky_shadows_frames.comp -- the frames of the maps: one thread a map.
 //
-// A map is fitted around what of the surfaces is near the medium, as its direction sees it, or, a second one, around all. Depths reach over all
+// A map is fitted around what of the surfaces is near the box that pictures are of, as its direction sees it, or, a second one, around all. Depths reach over all
 // surfaces. Maps are two texels wider than need be on all sides, so that the texels around any place inside belong to the map.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/sky_map_args.h"
 #include "shaders/light/ordinate_args.h"
+#include "shaders/light/near_box.glsl"
 #include "shaders/surfaces/surface_args.h"
 
 layout(local_size_x = 64) in;
 TYN_ARGS(sky_frames_args args);
-TYN_UNIFORM(0, medium, medium_block medium);
-TYN_UNIFORM(1, surfaces, surface_block surfaces);
-TYN_UNIFORM(2, ordinates, ordinates_block ordinates);
-TYN_WRITE(3, sky_maps, shadow_light maps[]);
+TYN_UNIFORM(0, surfaces, surface_block surfaces);
+TYN_UNIFORM(1, ordinates, ordinates_block ordinates);
+TYN_WRITE(2, sky_maps, shadow_light maps[]);
 
 // A direction of M along the axes of the world.
 vec3 in_world(vec3 r)
@@ -35,7 +35,7 @@ vec2 range_of_all(vec3 r)
                                    dot(max(w * surfaces.lo, w * surfaces.hi), vec3(1.0)));
 }
 
-// The box in M of the surfaces that are within `sides` of its longest side of the medium: from, to. 0: of all.
+// The box in M of the surfaces that are within `sides` of its longest side of the near box: from, to. 0: of all.
 void near_box(float sides, out vec3 from, out vec3 to)
 {
     for (int a = 0; a < 3; a++) {
@@ -43,8 +43,8 @@ void near_box(float sides, out vec3 from, out vec3 to)
         from[a] = range.x;
         to[a] = range.y;
     }
-    float longest = max(medium.extent.x, max(medium.extent.y, medium.extent.z)), reach = sides * longest;
-    vec3 lo = min(max(from, vec3(-reach)), to), hi = max(min(to, medium.extent + reach), from);
+    float reach = sides * near_box_size(args.near_lo, args.near_hi);
+    vec3 lo = min(max(from, args.near_lo - reach), to), hi = max(min(to, args.near_hi + reach), from);
     if (reach > 0.0) {
         from = lo;
         to = hi;

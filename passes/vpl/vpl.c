@@ -137,7 +137,7 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
     const uint32_t exchanged = of_bins ? TYN_COUNT(bins) : 0;
     uint8_t weights[TYN_MAX_BINDINGS], lights[TYN_MAX_BINDINGS];
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
-    TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1},
+    TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1}, .args = args,
                  .ports = tyn_ports_exchanged(&kernels[WEIGHTS], bins, exchanged, weights));
     TYN_DISPATCH(r, .kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
     TYN_DISPATCH(r, .kernel = LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
@@ -166,7 +166,9 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t side = map_side(p, triangles), media = tyn_rec_has(r, PORT(DENSITY));
     const uint32_t later =
         again ? (3 * (uint32_t)p->count + 7) / 8 : 0; // VPLs of further reflections
-    const struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
+    struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
+    memcpy(args.near_lo, p->near_lo, sizeof args.near_lo);
+    memcpy(args.near_hi, p->near_hi, sizeof args.near_hi);
     struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
     const tyn_dispatch see = {.kernel = DISTANCES,
                               .cells = tyn_rec_extent(r, PORT(VPL_DISTANCES)),
@@ -180,7 +182,9 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &see);
     }
     if (again) {
-        struct vpl_args added = {later, p->num_suns, 0, 1};
+        struct vpl_args added = args;
+        added.count = later;
+        added.media = 0;
         memset(&plan, 0, sizeof plan);
         plan.num_blocks = plan.front = plan.back = VPL_BINS / VPL_BLOCK;
         plan.num_tiles = plan.num_sources = 1;

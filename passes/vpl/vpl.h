@@ -14,8 +14,9 @@ typedef struct tyn_vpl_params {
     uint32_t num_suns; // directional lights in "lights": lamps come after them
     uint32_t emitters; // 1: there are materials that emit; 2: some of them on both sides
     uint32_t num_triangles;
-    uint32_t bounces;   // 1: what VPLs light sends on all it reflects, as VPLs too
-    uint32_t num_tiles; // of the reflective shadow maps
+    float near_lo[3], near_hi[3]; // tyn_frame_scene.near_lo, near_hi
+    uint32_t bounces;             // 1: what VPLs light sends on all it reflects, as VPLs too
+    uint32_t num_tiles;           // of the reflective shadow maps
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_vpl_params;
 

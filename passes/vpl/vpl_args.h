@@ -42,7 +42,8 @@ struct vpl_args {
     tyn_uint media; // 1: there is a medium
     tyn_uint
         append; // 1: VPLs are added to those that are there; 2: in place of those that were added last
+    tyn_vec3 near_lo, near_hi; // M: VPLs are close together near this box
 };
-TYN_ASSERT_SIZE(vpl_args, 16);
+TYN_ASSERT_SIZE(vpl_args, 40);
 
 #endif

@@ -6,6 +6,7 @@
 #include "vpl_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/light/hilbert.glsl"
+#include "shaders/light/near_box.glsl"
 
 #define GEOMETRY_AT 4
 #define MATERIALS_AT 8
@@ -86,6 +87,18 @@ float vpl_weight(vec3 flux)
 {
     float w = flux.r + flux.g + flux.b;
     return w > 0.0 && !isinf(w) ? w : 0.0; // also where it is no number
+}
+
+// An element of a map counts the less the farther it is from the box that pictures are of: what a ground sends to a wall of the
+// box's size falls with the third power of the distance. Else a ground of a kilometre had all VPLs and the box one below it.
+float vpl_nearness(vpl_block block, uint element, vec3 near_lo, vec3 near_hi)
+{
+    if (block.index >= plan.front || block.map.light < TYN_RSM_SKY) {
+        return 1.0;
+    }
+    vec3 p = texelFetch(rsm_position_tex, vpl_texel(block, element), 0).xyz;
+    float away = near_box_away(p, near_lo, near_hi), b = 1.0 + away * away;
+    return 1.0 / (b * sqrt(b));
 }
 
 // A piece of a surface: part of a triangle, or what a texel sees.

@@ -1,6 +1,6 @@
 // vpl_lights.comp -- one workgroup a VPL: the light that stands for a stratum of elements.
 //
-// All power of the stratum is the VPL's. Where it is and looks is the mean of those of its elements that
+// The power of the stratum is the VPL's. Where it is and looks is the mean of those of its elements that
 // lie on one smooth piece of a surface with one that vpl_strata.comp has chosen, weighted by power: it does
 // not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
@@ -125,13 +125,14 @@ vec3 part_of(uint block, uint element, vpl_stratum stratum)
 // Does a piece go on from the centre's? Within some 20 degrees of its plane, facing the same way, and not
 // farther than connected pieces of that area reach: places on a Hilbert curve that an area A is between are sqrt(6 A) apart at
 // most (Bauman 2006), or farther where texels of a map are of unequal areas. In between, partly, so that nothing jumps
-// (docs/measurements.md, "Constants").
-float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
+// (docs/measurements.md, "Constants"). Nor where elements count for much more or less: the mean would be of those.
+float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area, float nearness)
 {
     float dd = dot(offset, offset);
     float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-36));
     return smoothstep(0.5, 0.8, dot(normal, centre_normal)) * (1.0 - smoothstep(0.15, 0.35, off)) *
-           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd));
+           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd)) *
+           (1.0 - smoothstep(0.4, 1.1, abs(log(max(nearness, 1e-30)))));
 }
 
 void main()
@@ -167,6 +168,9 @@ void main()
         }
     }
     flux = total_of(flux);
+    // As much as if all of the stratum were as near as this place: else what is far would shine from near by.
+    float power = flux.r + flux.g + flux.b, nearness = vpl_nearness(block, at, args.near_lo, args.near_hi);
+    flux *= power > 0.0 ? (stratum.to - stratum.from) / (nearness * power) : 0.0;
 
     vec4 place = vec4(0.0);  // offset from the centre; weight
     vec4 normal = vec4(0.0); // normal; squared offset
@@ -176,11 +180,12 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
+                float near = pieces > 0u ? vpl_nearness(b, e, args.near_lo, args.near_hi) / nearness : 1.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
                     float v = part.z / float(pieces);
-                    v *= same_piece(d, p.normal, centre.normal, flux.a);
+                    v *= same_piece(d, p.normal, centre.normal, flux.a, near);
                     place += v * vec4(d, 1.0);
                     normal += v * vec4(p.normal, dot(d, d) + p.area / (2.0 * VPL_PI));
                 }
@@ -210,10 +215,11 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
+                float near = pieces > 0u ? vpl_nearness(b, e, args.near_lo, args.near_hi) / nearness : 1.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
-                    float v = same_piece(d, p.normal, centre.normal, flux.a);
+                    float v = same_piece(d, p.normal, centre.normal, flux.a, near);
                     above = max(above, min(v, 1.0) * dot(d - offset, light.direction));
                 }
             }

@@ -1,4 +1,5 @@
 // vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
+// They are power times nearness.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -8,6 +9,7 @@ layout(local_size_x = VPL_LANES) in;
 
 TYN_WRITE(11, weights, float weights[]); // of an element and those before it in its block
 TYN_WRITE(12, blocks, float blocks[]);
+TYN_ARGS(vpl_args args);
 
 const uint EACH = VPL_BLOCK / VPL_LANES; // elements of a thread, one after the other
 shared float sums[VPL_LANES];
@@ -18,7 +20,8 @@ void main()
     vpl_block block = vpl_block_at(index);
     float own[EACH], sum = 0.0;
     for (uint i = 0u; i < EACH; i++) {
-        sum += vpl_weight(vpl_flux(block, EACH * lane + i));
+        uint e = EACH * lane + i;
+        sum += vpl_weight(vpl_flux(block, e)) * vpl_nearness(block, e, args.near_lo, args.near_hi);
         own[i] = sum;
     }
     sums[lane] = sum;

@@ -86,7 +86,6 @@ void sky_scene_upload(gpu_test *t, const sky_scene *s, tyn_ref *refs,
                       const tyn_sky_shadows_params *params)
 {
     const tyn_surfaces *m = &s->scene.surfaces;
-    refs[SKY_SHADOWS_PORT_MEDIUM] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
     refs[SKY_SHADOWS_PORT_SURFACES] = gpu_buffer(t, "surfaces", &s->surfaces, sizeof s->surfaces);
     refs[SKY_SHADOWS_PORT_TRIANGLES] =
         gpu_buffer(t, "triangles", m->triangles, m->num_triangles * sizeof m->triangles[0]);

@@ -54,6 +54,7 @@ static void cells_see_what_rays_see(void **state)
     sky_scene_make(&scene, COUNT, FIXED, FAN);
     const tyn_sky_shadows_params maps = {.texels = 256,
                                          .reach = 3,
+                                         .near_hi = {2, 2, 2},
                                          .count = FIXED + (COUNT - FIXED) * FAN,
                                          .num_triangles = scene.scene.surfaces.num_triangles};
     const tyn_sky_seen_params params = {

@@ -37,6 +37,7 @@ static void maps_see_what_rays_meet(void **state)
     sky_scene_make(&scene, 5, 0, 1);
     tyn_sky_shadows_params params = {.texels = 256,
                                      .reach = 3,
+                                     .near_hi = {2, 2, 2},
                                      .count = 6, // one more than there are
                                      .num_triangles = scene.scene.surfaces.num_triangles};
     tyn_graph_begin(t->graph);

@@ -43,7 +43,7 @@ static void layout(void **state)
         SIZE(tyn_ref, 8),
         SIZE(tyn_lattice_shape, 44),
         SIZE(tyn_lights, 8716),
-        SIZE(tyn_frame_scene, 27160),
+        SIZE(tyn_frame_scene, 27184),
         SIZE(tyn_scene_refs, 296),
         SIZE(tyn_job, 408),
         SIZE(tyn_picture, 24),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 5);
+    assert_int_equal(TYN_EXTEND_ABI, 6);
     assert_int_equal(changed, 0);
 }
 

@@ -59,6 +59,9 @@ typedef struct tyn_frame_scene {
     // Area times the largest channel of the emission, of all that emit, W/sr; 0 if there are none, or no tyn_scene_refs.emitters.
     float emitters;
     struct surface_block surfaces;
+    // M, m: the box that pictures are of, around which maps of surfaces are fine: that of all media; without media that of most
+    // triangles.
+    float near_lo[3], near_hi[3];
     // World space -> M: a turn and a move, column-major.
     float m_from_world[16];
     // The engine's own, for the calls of sources.h: not to be looked into.
