@@ -170,7 +170,9 @@ void main()
     flux = total_of(flux);
     // As much as if all of the stratum were as near as this place: else what is far would shine from near by.
     float power = flux.r + flux.g + flux.b, nearness = vpl_nearness(block, at, args.near_lo, args.near_hi);
-    flux *= power > 0.0 ? (stratum.to - stratum.from) / (nearness * power) : 0.0;
+    if (block.index < plan.front && block.map.light >= TYN_RSM_SKY) {
+        flux *= power > 0.0 ? (stratum.to - stratum.from) / (nearness * power) : 0.0;
+    }
 
     vec4 place = vec4(0.0);  // offset from the centre; weight
     vec4 normal = vec4(0.0); // normal; squared offset
