@@ -81,18 +81,25 @@ static double bounded_error(const candidate *k)
     return k->p.error * error_margin(k);
 }
 
+static bool meets(const chooser *c, const candidate *k)
+{
+    return !isnan(c->request->budget_ms) ? meets_budget(c, k) : meets_error(c, k);
+}
+
+// Within the budget, or where no error is low enough.
+static bool judged_by_error(const chooser *c, const candidate *k)
+{
+    return !isnan(c->request->budget_ms) == meets(c, k);
+}
+
 // Is `a` the better answer, where the least error is `least` (0: not known yet)?
 static bool better(const chooser *c, const candidate *a, const candidate *b, double least)
 {
-    const bool budget = !isnan(c->request->budget_ms);
-    const bool a_meets = budget ? meets_budget(c, a) : meets_error(c, a);
-    const bool b_meets = budget ? meets_budget(c, b) : meets_error(c, b);
-    if (a_meets != b_meets) {
-        return a_meets;
+    if (meets(c, a) != meets(c, b)) {
+        return meets(c, a);
     }
-    const bool by_error = budget == a_meets; // within the budget, or where no error is low enough
     const double ea = bounded_error(a), eb = bounded_error(b);
-    if (by_error && fmax(ea, eb) > alike * least) {
+    if (judged_by_error(c, a) && fmax(ea, eb) > alike * least) {
         return ea < eb;
     }
     return a->p.ms * ms_margin(a) < b->p.ms * ms_margin(b);
@@ -151,7 +158,7 @@ static bool look_for_best(const chooser *c, const char *without, double least, c
 static bool best_of(const chooser *c, const char *without, candidate *best)
 {
     return look_for_best(c, without, 0, best) &&
-           look_for_best(c, without, bounded_error(best), best);
+           (!judged_by_error(c, best) || look_for_best(c, without, bounded_error(best), best));
 }
 
 bool choose(const fronts *f, const regime *r, const choose_request *request, choice *out)

@@ -32,8 +32,8 @@ typedef struct regime {
     double albedo;        // of what is met: scattering / extinction, over the whole medium
     double albedo_rgb[3];
     double g, g_rgb[3]; // mean cosine, weighted by scattering
-    double least_g,
-        most_g; // of any channel of any medium that scatters; least_g also by the height straight back
+    // Of any channel of any medium that scatters; the least also by the height straight back.
+    double least_g, most_g;
     // Weighted by extinction: at the places where light meets the medium.
     double mean_free_path;           // 1 / sigma_t, m
     double transport_mean_free_path; // 1 / (sigma_a + (1 - g) sigma_s), m

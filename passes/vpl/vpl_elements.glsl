@@ -89,11 +89,16 @@ float vpl_weight(vec3 flux)
     return w > 0.0 && !isinf(w) ? w : 0.0; // also where it is no number
 }
 
-// An element of a map counts the less the farther it is from the box that pictures are of: what a ground sends to a wall of the
+bool vpl_of_sky(vpl_block block)
+{
+    return block.index < plan.front && block.map.light >= TYN_RSM_SKY;
+}
+
+// An element under the sky counts the less the farther it is from the box that pictures are of: what a ground sends to a wall of the
 // box's size falls with the third power of the distance. Else a ground of a kilometre had all VPLs and the box one below it.
 float vpl_nearness(vpl_block block, uint element, vec3 near_lo, vec3 near_hi)
 {
-    if (block.index >= plan.front || block.map.light < TYN_RSM_SKY) {
+    if (!vpl_of_sky(block)) {
         return 1.0;
     }
     vec3 p = texelFetch(rsm_position_tex, vpl_texel(block, element), 0).xyz;

@@ -170,7 +170,7 @@ void main()
     flux = total_of(flux);
     // As much as if all of the stratum were as near as this place: else what is far would shine from near by.
     float power = flux.r + flux.g + flux.b, nearness = vpl_nearness(block, at, args.near_lo, args.near_hi);
-    if (block.index < plan.front && block.map.light >= TYN_RSM_SKY) {
+    if (vpl_of_sky(block)) {
         flux *= power > 0.0 ? (stratum.to - stratum.from) / (nearness * power) : 0.0;
     }
 

@@ -275,7 +275,23 @@ static void make_yard(tyn_scene *scene, sky_kind sky, float albedo)
     add_sky(scene, sky);
 }
 
-enum { TRAY, AROUND, ROOM, YARD };
+// A cube of 1 m on a ground of `half` m to all sides, `fog`: in a box of it.
+static void make_ground(tyn_scene *scene, sky_kind sky, float half, bool fog)
+{
+    tyn_scene_init(scene);
+    const uint32_t m = solids_material(scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+    solids_quad(scene, (float[]){-half, 0, -half}, (float[]){0, 0, 2 * half},
+                (float[]){2 * half, 0, 0}, m);
+    solids_box(scene, (float[]){-0.5f, 0.001f, -0.5f}, (float[]){0.5f, 1, 0.5f}, 0, false, m);
+    solids_hierarchy(scene, 4);
+    if (fog) {
+        const tyn_medium medium = grey_medium(0.2f, 0.02f, 0.6f);
+        scene_add_box(scene, &medium, (float[]){-1, 0, -1}, (float[]){1, 1.5f, 1}, NULL, NULL);
+    }
+    add_sky(scene, sky);
+}
+
+enum { TRAY, AROUND, ROOM, YARD, GROUND, GROUND_IN_FOG };
 
 static void against_path(void **state)
 {
@@ -284,7 +300,7 @@ static void against_path(void **state)
         const char *name;
         int scene;
         sky_kind sky;
-        float albedo;
+        float size; // albedo; of GROUND half of its side, m
         double error, bias;
         const char *reason; // of a known failure
     } cases[] = {
@@ -301,6 +317,10 @@ static void against_path(void **state)
         {"dark yard, window", YARD, WINDOW, 0.1f, 0.015, 0.003, NULL},
         {"yard, blue", YARD, BLUE, 0.6f, 0.012, 0.006, NULL},
         {"yard, even", YARD, EVEN, 0.6f, 0.012, 0.004, NULL},
+        {"ground of 40 m, even", GROUND, EVEN, 20, 0.016, 0.01, NULL},
+        {"ground of 40 m, blue", GROUND, BLUE, 20, 0.014, 0.003, NULL},
+        {"ground of 200 m, even", GROUND, EVEN, 100, 0.05, 0.05, NULL},
+        {"fog on 80 m, even", GROUND_IN_FOG, EVEN, 40, 0.028, 0.016, NULL},
     };
     path_run runs;
     path_run_open(&runs, t->dev);
@@ -309,14 +329,17 @@ static void against_path(void **state)
         tyn_scene scene;
         tyn_view view = {0};
         if (cases[i].scene == TRAY || cases[i].scene == AROUND) {
-            make_tray(&scene, cases[i].sky, cases[i].albedo, cases[i].scene == AROUND);
+            make_tray(&scene, cases[i].sky, cases[i].size, cases[i].scene == AROUND);
             view_perspective(&view, (float[]){1.2f, 2.4f, 2.2f}, (float[]){0, 0.2f, 0}, 0.6f, SIZE);
         } else if (cases[i].scene == ROOM) {
             make_room(&scene, cases[i].sky);
             view_perspective(&view, (float[]){1.6f, 1.7f, 1.7f}, (float[]){-0.8f, 0.9f, -0.6f},
                              1.1f, SIZE);
+        } else if (cases[i].scene >= GROUND) {
+            make_ground(&scene, cases[i].sky, cases[i].size, cases[i].scene == GROUND_IN_FOG);
+            view_perspective(&view, (float[]){0, 1, 4}, (float[]){0, 0.4f, 0}, 0.384f, SIZE);
         } else {
-            make_yard(&scene, cases[i].sky, cases[i].albedo);
+            make_yard(&scene, cases[i].sky, cases[i].size);
             view_perspective(&view, (float[]){3.6f, 2.6f, 4.4f}, (float[]){0.4f, 0.4f, 0}, 0.7f,
                              SIZE);
         }

@@ -24,8 +24,7 @@ bool vdb_file_write(int i, const char *path)
         for (int y = 0; y < VDB_NY; y++) {
             for (int x = 0; x < VDB_NX; x++) {
                 const float value = vdb_file_density(x, y, z);
-                const openvdb::Coord at(x - 3, y + 2,
-                                        z + 1); // several leaves, some of negative places
+                const openvdb::Coord at(x - 3, y + 2, z + 1); // some are negative
                 if (value > 0) {
                     density->tree().setValue(at, value);
                     color->tree().setValue(at, openvdb::Vec3s(value, 0.5f, 0.25f));

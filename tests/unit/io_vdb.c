@@ -128,8 +128,9 @@ static void damaged(void **state)
         free(whole);
     }
     print_message("%u of %u refused, %u of them as they were unpacked\n", refused, tried, unpacked);
-    assert_true(refused > 100);
-    assert_true(unpacked > 10);
+    // 572 and 47; other versions of zlib and Blosc compress to a few other bytes.
+    assert_in_range(refused, 550, 600);
+    assert_in_range(unpacked, 40, 55);
 }
 
 #endif

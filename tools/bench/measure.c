@@ -269,8 +269,7 @@ static int time_unchanged(measuring *m)
 {
     const bench_suite *suite = m->c->suite;
     int code = keep_busy(m);
-    code =
-        code == EXIT_DONE ? same_frame(m, NULL) : code; // what the camera left is put right first
+    code = code == EXIT_DONE ? same_frame(m, NULL) : code; // puts right what the camera left
     return code == EXIT_DONE ? time_frames(m, TIME_UNCHANGED, same_frame, NULL, 1, suite->frames,
                                            suite->timing_seconds)
                              : code;
