@@ -620,9 +620,9 @@ static const option output_table[] = {
      "depth, depth_t50, single or multiple every pixel is marched, none upsampled: the picture "
      "changes by up to 1 %"},
     {0, "crop", OPT_TEXT, AT(crop), "X,Y,WxH",
-     "only these pixels of the picture, from column X and row Y on; of an .exr they are the data "
-     "window in the whole picture's display window. Parts of one picture by 'path' want a --seed "
-     "each"},
+     "only these pixels, from column X and row Y on: by default settings those of the whole "
+     "picture, but for the noise of 'path'. Of an .exr they are the data window in the whole's "
+     "display window. Parts of one picture by 'path' want a --seed each"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",

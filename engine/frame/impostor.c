@@ -73,6 +73,8 @@ static bool face(const struct camera_block *from, const float extent[3], struct 
     to->half_width = to->half_height =
         (float)(from->orthographic ? radius : radius / sqrt(distance2 - radius2));
     to->shift[0] = to->shift[1] = 0;
+    memset(to->corner, 0, sizeof to->corner);
+    memset(to->beyond, 0, sizeof to->beyond);
     return true;
 }
 

@@ -6,6 +6,19 @@
 #include <string.h>
 #include <time.h>
 
+// A part of a picture is rendered with a margin and from a multiple of pixels on, so that each pixel has the neighbours that it
+// has in the whole picture, and grids and patterns of pixels begin at the same places: nodes of raymarch.h and its 8 x 8 first
+// steps, the display's dither, and blocks of shade.h, by their defaults. Those of `shade` reach farthest: five blocks of two
+// pixels, and two on their other sides.
+enum { PART_PERIOD = 40, PART_MARGIN = 24 };
+
+// What of a rendered picture is asked for, pixels.
+typedef struct shown_part {
+    uint32_t corner[2], size[2], rendered[2];
+} shown_part;
+
+enum { NUM_OUTPUTS = 16 }; // bits of tyn_output
+
 struct tyn_offline {
     tyn_device *dev;
     tyn_context *context;
@@ -17,6 +30,9 @@ struct tyn_offline {
     // Sums over the records of the last frame; num_nodes 0: it was one record.
     tyn_node_report *nodes;
     uint32_t num_nodes;
+    bool progressive;
+    shown_part shown;            // of the last frame's pictures
+    void *pictures[NUM_OUTPUTS]; // parts of them, by the output's bit
 };
 
 static double now_ms(void)
@@ -51,6 +67,8 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
     }
     off->dev = dev;
     off->submission.dev = dev;
+    tyn_method_info info; // of a method that is none the context complains
+    off->progressive = tyn_method_named(params->method, &info) && info.progressive;
     tyn_result result = tyn_context_create(
         dev,
         tyn_context_params(.method = params->method, .settings = params->settings,
@@ -76,6 +94,9 @@ void tyn_offline_destroy(tyn_offline **offline)
     *offline = NULL;
     tyn_context_destroy(&off->context);
     tyn_submission_destroy(&off->submission);
+    for (uint32_t i = 0; i < NUM_OUTPUTS; i++) {
+        free(off->pictures[i]);
+    }
     free(off->nodes);
     free(off);
 }
@@ -137,13 +158,41 @@ static void add_record(tyn_offline *off)
     }
 }
 
+static bool is_part(const tyn_view *view, uint32_t size, int axis)
+{
+    const uint32_t whole = view->whole[axis];
+    return size >= 1 && whole <= 65536 && size <= whole && view->corner[axis] <= whole - size;
+}
+
+// What is rendered for `view`: of what is no part (it will be refused) and for progressive methods, where no pixel depends on
+// others, what is asked for.
+static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool progressive)
+{
+    tyn_view all = *view;
+    uint32_t *size[2] = {&all.width, &all.height};
+    *shown = (shown_part){{0, 0}, {view->width, view->height}, {view->width, view->height}};
+    if (progressive || !is_part(view, view->width, 0) || !is_part(view, view->height, 1)) {
+        return all;
+    }
+    for (int a = 0; a < 2; a++) {
+        const uint32_t from = view->corner[a], first = from > PART_MARGIN ? from - PART_MARGIN : 0;
+        const uint32_t end = from + *size[a] + PART_MARGIN;
+        all.corner[a] = first / PART_PERIOD * PART_PERIOD;
+        *size[a] = (end < view->whole[a] ? end : view->whole[a]) - all.corner[a];
+        shown->corner[a] = from - all.corner[a];
+        shown->rendered[a] = *size[a];
+    }
+    return all;
+}
+
 tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                              bool recompute)
 {
     if (!off || !TYN_GIVEN(&off->dev->log, scene, view)) {
         return TYN_ERR_PARAMS;
     }
-    tyn_view part = *view;
+    shown_part shown;
+    tyn_view part = rendered_view(&shown, view, off->progressive);
     tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
     uint32_t batch = tyn_context_batch(off->context, &frame);
     uint32_t samples = view->num_samples ? view->num_samples : 1;
@@ -152,6 +201,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     double start = now_ms();
     tyn_result result = tyn_context_prepare(off->context, &frame);
     if (result == TYN_OK) {
+        off->shown = shown; // of a frame that is refused the pictures are those of the last one
         frame.setup_only = true;
         result = submit(off, &frame);
         frame.setup_only = false;
@@ -177,9 +227,35 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     return result;
 }
 
+// Bytes of a pixel of a picture; 0: the output is none.
+static uint32_t pixel_bytes(tyn_output output)
+{
+    const uint32_t none = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_FLUXES;
+    return output & none ? 0 : output == TYN_OUTPUT_DISPLAY ? 4 : 4 * sizeof(float);
+}
+
 const void *tyn_offline_output(tyn_offline *off, tyn_output output)
 {
-    return off ? tyn_context_output(off->context, output) : NULL;
+    const char *from = off ? tyn_context_output(off->context, output) : NULL;
+    const uint32_t bytes = pixel_bytes(output);
+    const shown_part *shown = off ? &off->shown : NULL;
+    if (!from || !bytes || !memcmp(shown->size, shown->rendered, sizeof shown->size)) {
+        return from;
+    }
+    uint32_t bit = 0;
+    while (!((uint32_t)output >> bit & 1)) {
+        bit++;
+    }
+    const size_t row = (size_t)bytes * shown->size[0],
+                 rendered = (size_t)bytes * shown->rendered[0];
+    void **picture = &off->pictures[bit];
+    free(*picture);
+    *picture = malloc(row * shown->size[1]);
+    for (uint32_t y = 0; *picture && y < shown->size[1]; y++) {
+        memcpy((char *)*picture + y * row,
+               from + (shown->corner[1] + y) * rendered + (size_t)bytes * shown->corner[0], row);
+    }
+    return *picture;
 }
 
 void tyn_offline_report(tyn_offline *off, tyn_report *report)

@@ -207,8 +207,8 @@ static tyn_result from_camera(tyn_frame_projection *out, const tyn_frame *frame,
     return TYN_OK;
 }
 
-// Of the whole picture's the part's.
-static tyn_result take_part(tyn_frame_projection *out, const tyn_view *view, const tyn_log *log)
+// Refuses what is no part of the whole picture.
+static tyn_result check_part(const tyn_view *view, const tyn_log *log)
 {
     const uint32_t size[2] = {view->width, view->height};
     for (int a = 0; a < 2; a++) {
@@ -218,11 +218,6 @@ static tyn_result take_part(tyn_frame_projection *out, const tyn_view *view, con
                   size[0], size[1], view->corner[0], view->corner[1], view->whole[0],
                   view->whole[1]);
         }
-        const double part = (double)size[a] / whole;
-        double middle = (2.0 * corner + size[a]) / whole - 1; // in half sizes of the whole
-        middle = a == 1 ? -middle : middle;                   // row 0 is on top
-        out->half[a] *= part;
-        out->shift[a] = (out->shift[a] + middle) / part;
     }
     return TYN_OK;
 }
@@ -238,15 +233,16 @@ tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame 
     if (result != TYN_OK) {
         return result;
     }
-    const bool part = frame->view->whole[0] || frame->view->whole[1];
-    if (part && take_part(out, frame->view, log) != TYN_OK) {
+    const tyn_view *view = frame->view;
+    const bool part = view->whole[0] || view->whole[1];
+    if (part && check_part(view, log) != TYN_OK) {
         return TYN_ERR_PARAMS;
     }
     if (!finite_floats(frame->jitter, 2)) {
         FAULT("jitter is %g, %g; it must be finite, pixels", frame->jitter[0], frame->jitter[1]);
     }
-    out->shift[0] += 2 * (double)frame->jitter[0] / frame->view->width;
-    out->shift[1] -= 2 * (double)frame->jitter[1] / frame->view->height;
+    out->shift[0] += 2 * (double)frame->jitter[0] / (part ? view->whole[0] : view->width);
+    out->shift[1] -= 2 * (double)frame->jitter[1] / (part ? view->whole[1] : view->height);
     const float *d = out->depth;
     // z can be told from depth if that is no constant.
     if (frame->depth && (!finite_floats(frame->view_to_clip, 16) || d[0] * d[3] == d[1] * d[2])) {

@@ -110,6 +110,7 @@ typedef struct picture {
     int32_t x0, y0;
     exr_decode_pipeline_t decode;
     bool decoding;
+    void *unread; // a line of a channel that is left out
 } picture;
 
 // Reads one chunk (a band of lines or a tile) whose upper left corner is at (x, y) of the image.
@@ -129,8 +130,15 @@ static exr_result_t read_chunk(picture *p, const exr_chunk_info_t *chunk, int32_
     for (int16_t c = 0; c < p->decode.channel_count; c++) {
         exr_coding_channel_info_t *channel = &p->decode.channels[c];
         float *data = tyn_image_file_channel(p->image, channel->channel_name);
-        channel->decode_to_ptr =
-            data ? (uint8_t *)(data + (size_t)y * p->image->width + (size_t)x) : NULL;
+        if (!data) { // decoded all the same: the library has routines that do so with every channel
+            channel->decode_to_ptr = p->unread;
+            channel->user_pixel_stride = channel->bytes_per_element;
+            channel->user_line_stride = 0;
+            channel->user_bytes_per_element = channel->bytes_per_element;
+            channel->user_data_type = channel->data_type;
+            continue;
+        }
+        channel->decode_to_ptr = (uint8_t *)(data + (size_t)y * p->image->width + (size_t)x);
         channel->user_pixel_stride = sizeof(float);
         channel->user_line_stride = (int32_t)(p->image->width * sizeof(float));
         channel->user_bytes_per_element = sizeof(float);
@@ -263,6 +271,11 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     if (r) {
         return r;
     }
+    p->unread = malloc((size_t)width * sizeof(float));
+    if (!p->unread) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to read it", file);
+        return TYN_ERR_MEMORY;
+    }
     e = storage == EXR_STORAGE_TILED ? read_tiles(p) : read_lines(p);
     return e == EXR_ERR_SUCCESS ? TYN_OK : report(s, e, file, log);
 }
@@ -286,6 +299,7 @@ tyn_result tyn_exr_parse(tyn_image_file *image, const void *bytes, size_t size, 
     }
     tyn_result r =
         e == EXR_ERR_SUCCESS ? read_picture(&p, &s, file, log) : report(&s, e, file, log);
+    free(p.unread);
     if (p.decoding) {
         exr_decoding_destroy(p.context, &p.decode);
     }

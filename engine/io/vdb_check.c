@@ -7,6 +7,7 @@
 // of tree/RootNode.h, InternalNode.h and LeafNode.h. Trees of other types than are listed here are not read, and not
 // walked.
 #include "io/vdb_check.h"
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -365,6 +366,18 @@ static void walk_tree(walk *w, const value_type *t)
 
 // ---- the file ---------------------------------------------------------------------------------
 
+// What the file is known by: 32 digits and four dashes. Of others the library reads more or fewer bytes: it leaves out blanks.
+static void walk_uuid(walk *w)
+{
+    const uint8_t *b = take(w, 36);
+    for (int i = 0; b && i < 36 && !w->fault; i++) {
+        const bool dash = i == 8 || i == 13 || i == 18 || i == 23;
+        if (dash ? b[i] != '-' : !isxdigit(b[i])) {
+            fail(w, "is damaged: what it is known by is no UUID", "");
+        }
+    }
+}
+
 static void walk_header(walk *w, uint32_t newest, bool *has_offsets)
 {
     static const uint8_t magic[8] = {0x20, 0x42, 0x44, 0x56};
@@ -386,7 +399,7 @@ static void walk_header(walk *w, uint32_t newest, bool *has_offsets)
         b = take(w, 1);
         w->compression = b && *b ? ZIP : 0;
     }
-    take(w, 36); // what it is known by
+    walk_uuid(w);
 }
 
 static const value_type *find_type(char *name)

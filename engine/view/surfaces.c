@@ -7,15 +7,15 @@
 // All samples of a picture are in one image, which has no more texels along a side than the device can draw.
 static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
 {
-    const uint32_t longest = params->size[0] > params->size[1] ? params->size[0] : params->size[1];
+    const uint32_t *whole = job->view->whole[0] ? job->view->whole : params->size;
+    const uint32_t longest = whole[0] > whole[1] ? whole[0] : whole[1]; // a part has as many
     const int32_t most = (int32_t)(side / longest), asked = params->samples;
     if (asked > most && asked > 1) {
         params->samples = most > 1 ? most : 1;
         tyn_job_warn(job,
                      "%u x %u pixels with %d x %d samples of the surfaces are more than this "
                      "device draws (%u along a side): %d x %d, edges are less smooth",
-                     params->size[0], params->size[1], asked, asked, side, params->samples,
-                     params->samples);
+                     whole[0], whole[1], asked, asked, side, params->samples, params->samples);
     }
 }
 
@@ -106,6 +106,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.mode = job->frame->medium.mode;
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
+    memcpy(params.whole, job->view->whole[0] ? job->view->whole : params.size, sizeof params.whole);
     params.num_suns = tyn_num_beams(&job->frame->lights);
     params.num_directional = job->frame->lights.num_directional;
     const bool media =

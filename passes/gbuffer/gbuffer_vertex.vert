@@ -29,5 +29,7 @@ void main()
     float depth = 1.0 - z / max(farthest, 1e-6 * length(size));
     float w = camera_select(camera, 1.0, z);
     across -= w * camera.shift;
-    gl_Position = vec4(across.x, -across.y, camera_select(camera, depth, 1e-6 * length(size)), w);
+    vec2 part = camera_whole(camera) / vec2(camera.size);
+    across = part * vec2(across.x, -across.y) - w * (2.0 * vec2(camera.corner) - vec2(camera.beyond)) / vec2(camera.size);
+    gl_Position = vec4(across, camera_select(camera, depth, 1e-6 * length(size)), w);
 }

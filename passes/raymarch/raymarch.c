@@ -87,12 +87,20 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
     return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
 }
 
+// Of the whole picture, pixels.
+static tyn_extent whole_of(const tyn_raymarch_params *p)
+{
+    return p->whole[0] ? (tyn_extent){p->whole[0], p->whole[1], 1}
+                       : (tyn_extent){p->width, p->height, 1};
+}
+
 // Layers that need a ray in every pixel have one.
 static bool is_sparse(const tyn_raymarch_params *p)
 {
+    const tyn_extent whole = whole_of(p);
     const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
     return p->sparse && !(p->layers & dense) && !(p->noise > 0) &&
-           (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
+           (uint64_t)whole.x * whole.y <= RAYMARCH_REST_MAX;
 }
 
 static tyn_extent window_of(const tyn_raymarch_params *p)
@@ -141,8 +149,8 @@ static float shortest_voxel(tyn_extent size, const float extent[3])
 // Voxels smaller than pixels have details between the nodes of a grid that its second differences do not tell of.
 static bool voxels_are_seen(const tyn_raymarch_params *p, tyn_extent voxels)
 {
-    const tyn_extent window = window_of(p);
-    const uint32_t across = window.x > window.y ? window.x : window.y;
+    const tyn_extent whole = whole_of(p);
+    const uint32_t across = p->across ? p->across : whole.x > whole.y ? whole.x : whole.y;
     return across >= voxels.x && across >= voxels.y && across >= voxels.z;
 }
 
@@ -167,13 +175,20 @@ void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block 
             hi[i] = beside ? INFINITY : fmaxf(hi[i], s);
         }
     }
-    const float size[2] = {(float)params->width, (float)params->height};
+    const float size[2] = {(float)params->width, (float)params->height}, nodes = RAYMARCH_NODES;
     const float from[2] = {lo[0], -hi[1]}, to[2] = {hi[0], -lo[1]}; // rows run down
+    const tyn_extent whole = whole_of(params);
+    const float ends[2] = {(float)whole.x, (float)whole.y};
+    params->across = 1;
     for (int i = 0; i < 2; i++) {
-        float a = floorf(0.5f * (from[i] + 1) * size[i]) - 1,
-              b = ceilf(0.5f * (to[i] + 1) * size[i]) + 1;
-        params->first[i] = (uint32_t)fminf(fmaxf(a, 0), size[i]);
-        params->end[i] = (uint32_t)fminf(fmaxf(b, (float)params->first[i]), size[i]);
+        const float corner = (float)params->corner[i];
+        float a = floorf(0.5f * (from[i] + 1) * ends[i]) - 1, // of the whole picture
+            b = ceilf(0.5f * (to[i] + 1) * ends[i]) + 1;
+        a = fminf(nodes * floorf(fmaxf(a, 0) / nodes), ends[i]);
+        b = fminf(fmaxf(b, a), ends[i]);
+        params->across = (uint32_t)fmaxf((float)params->across, b - a);
+        params->first[i] = (uint32_t)fminf(fmaxf(a - corner, 0), size[i]);
+        params->end[i] = (uint32_t)fminf(fmaxf(b - corner, (float)params->first[i]), size[i]);
     }
     if (params->first[0] >= params->end[0] || params->first[1] >= params->end[1]) {
         // Out of sight: one pixel, as all zeros would mean all.
@@ -229,7 +244,7 @@ static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dis
     const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
     const struct raymarch_rest empty[2] = {none, none};
     tyn_rec_update(r, RAYMARCH_PORT_REST, 0, empty, sizeof empty);
-    args->spacing = features & (RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? 2 : 4;
+    args->spacing = features & (RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? 2 : RAYMARCH_NODES;
     args->lists[0] = 0;
     args->lists[1] = ((p->width + 1) / 2) * ((p->height + 1) / 2);
     args->listed = 0;

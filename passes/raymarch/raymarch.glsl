@@ -344,7 +344,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     for (uint n = 0u; n < raymarch_num_suns; n++) {
         suns[n] = march_sun_of(n, unit, origin, direction);
     }
-    float pixel = 2.0 * camera.half_width / float(camera.size.x);
+    float pixel = camera_pixel(camera).x;
     bool orthographic = camera.orthographic != 0u;
     march_lamps lamps = march_lamps(origin, direction, start, orthographic ? pixel : 0.0,
                                     orthographic ? 0.0 : pixel);

@@ -33,6 +33,8 @@ typedef struct tyn_raymarch_params {
     uint32_t one_channel; // 1: inscatter has one channel, to be multiplied with `tint`
     float tint[3];
     uint32_t width, height;
+    // Not {0}: of the picture that this is a part of, from `corner` on (tyn_view).
+    uint32_t whole[2], corner[2];
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
     float majorant;     // of sigma_t, 1/m; 0: not known
@@ -43,8 +45,9 @@ typedef struct tyn_raymarch_params {
     uint32_t kind;   // of all shapes (TYN_SHAPE_KIND_*), or TYN_SHAPE_KIND_ANY
     uint32_t repeat; // 1: the medium is periodic along an axis
     uint32_t first[2],
-        end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
-    float depth[4]; // of the host's depth: tyn_job.host_depth
+        end[2];      // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
+    uint32_t across; // the longer side of the whole picture's window; 0: of the whole picture
+    float depth[4];  // of the host's depth: tyn_job.host_depth
 } tyn_raymarch_params;
 
 // The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice
@@ -52,8 +55,11 @@ typedef struct tyn_raymarch_params {
 // media of few voxels; else steps are as long as voxels.
 float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_block *medium);
 
-// Sets first and end to a window that holds every pixel from which a ray may meet the media's box.
+// Sets first, end and across to a window that holds every pixel from which a ray may meet the media's box. It begins where
+// a part of the picture, at a multiple of RAYMARCH_NODES pixels, has the same nodes as the whole (raymarch_sparse.glsl).
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);
+
+enum { RAYMARCH_NODES = 4 }; // pixels from a node of the coarsest grid to the next
 
 enum {
     RAYMARCH_LAYER_TRANSMITTANCE = 1 << 0,

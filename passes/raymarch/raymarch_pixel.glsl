@@ -26,7 +26,7 @@ uint rays_of_pixel(ivec2 pixel, out uint shapes_met)
     }
     // Origin or direction is linear in the image position.
     camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
-    vec2 quarter = 0.5 / vec2(camera.size);
+    vec2 quarter = 0.5 / camera_whole(camera);
     vec3 across = quarter.x * camera.half_width * camera.right;
     vec3 up = quarter.y * camera.half_height * camera.up;
     vec3 direction = ray.direction / camera_select(camera, 1.0, dot(ray.direction, camera.forward));

@@ -210,7 +210,7 @@ bool sees_sun(sparse_cell cell)
     if (!raymarch_has(RAYMARCH_BACKGROUND) || environment.has_map == 0u) {
         return false;
     }
-    float angle = camera_select(camera, 0.0, across * 2.0 * camera.half_width / float(camera.size.x));
+    float angle = camera_select(camera, 0.0, across * camera_pixel(camera).x);
     vec3 direction = camera_ray_through(camera, vec2(sparse_pixel(cell.node)) + 0.5 * across + 0.5).direction;
     bool sees = false;
     for (uint n = 0u; n < raymarch_num_suns; n++) {

@@ -62,13 +62,13 @@ static const tyn_param params[] = {
 // Pixels along each side of a block that has one place for smooth light.
 static uint32_t step_of(const tyn_shade_params *p, bool smooth)
 {
-    const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
+    const uint32_t shorter = p->whole[0] < p->whole[1] ? p->whole[0] : p->whole[1];
     return !smooth ? 1 : p->step ? (uint32_t)p->step : shorter < SHADE_STEP_FROM ? 1 : SHADE_STEP;
 }
 
-static tyn_extent blocks_of(const tyn_shade_params *p, uint32_t step)
+static tyn_extent blocks_of(const uint32_t pixels[2], uint32_t step)
 {
-    return (tyn_extent){(p->size[0] + step - 1) / step, (p->size[1] + step - 1) / step, 1};
+    return (tyn_extent){(pixels[0] + step - 1) / step, (pixels[1] + step - 1) / step, 1};
 }
 
 static tyn_result declare(tyn_builder *b, const void *data)
@@ -76,7 +76,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_shade_params *p = data;
     const bool vpls = tyn_build_has(b, PORT(VPLS)) || tyn_build_has(b, PORT(SKY_MAPS));
     const uint32_t step = step_of(p, vpls || tyn_build_has(b, PORT(MOMENTS)));
-    const tyn_extent blocks = vpls || step > 1 ? blocks_of(p, step) : (tyn_extent){1, 1, 1};
+    const tyn_extent blocks = vpls || step > 1 ? blocks_of(p->size, step) : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
     const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
     tyn_build_image(b, PORT(SURFACE_RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
@@ -134,8 +134,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
     const uint32_t step = step_of(p, shared || tyn_rec_has(r, PORT(MOMENTS)));
-    const tyn_extent blocks = blocks_of(p, step);
-    const uint32_t shorter = blocks.x < blocks.y ? blocks.x : blocks.y;
+    const tyn_extent blocks = blocks_of(p->size, step), of_whole = blocks_of(p->whole, step);
+    const uint32_t shorter = of_whole.x < of_whole.y ? of_whole.x : of_whole.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
     const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};

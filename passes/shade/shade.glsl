@@ -114,7 +114,7 @@ struct shade_footprint {
 shade_footprint shade_footprint_of(shade_point p, vec4 part)
 {
     vec3 ray = p.position - camera.origin;
-    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
+    vec2 size = camera_pixel(camera) * (part.zw - part.xy);
     float slope = abs(dot(camera_select(camera, camera.forward, normalize(ray)), p.facet));
     float wide = length(size) * camera_select(camera, 1.0, dot(ray, camera.forward));
     return shade_footprint(part, wide / max(slope, 1e-3), slope);
@@ -235,7 +235,7 @@ vec2 shade_shown(vec3 q)
     vec3 way = q - camera.origin;
     float z = camera_select(camera, 1.0, max(dot(way, camera.forward), 1e-6 * length(way)));
     vec2 s = vec2(dot(way, camera.right) / camera.half_width, dot(way, camera.up) / camera.half_height) / z - camera.shift;
-    return (0.5 + 0.5 * vec2(s.x, -s.y)) * vec2(camera.size);
+    return (0.5 + 0.5 * vec2(s.x, -s.y)) * camera_whole(camera) - vec2(camera.corner);
 }
 
 // Solid angle of a triangle whose plane is at the height h from 0; twice_area: that of the triangle (Van Oosterom and
@@ -265,7 +265,7 @@ float shade_lamp_on(shade_point p, shade_footprint foot, light_block lamp)
     vec3 most = shade_seen(p, shown);
     float nearness = 1.0 / (1.0 + 3.0 * unit * distance(position, most));
     // In perspective what is nearer to the eye takes more of the picture.
-    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (foot.part.zw - foot.part.xy);
+    vec2 size = camera_pixel(camera) * (foot.part.zw - foot.part.xy);
     float z = dot(most - camera.origin, camera.forward);
     float there = abs(dot(most - camera.origin, p.facet)) / (size.x * size.y) / z / z / z;
     density = camera_select(camera, density, mix(density, there, nearness));

@@ -13,8 +13,9 @@ typedef struct tyn_shade_params {
     // size asks.
     int32_t step;
     // Set by the method:
-    uint32_t mode;    // TYN_MEDIUM_*
-    uint32_t size[2]; // of the picture, pixels
+    uint32_t mode;     // TYN_MEDIUM_*
+    uint32_t size[2];  // of the picture, pixels
+    uint32_t whole[2]; // of the picture that this is a part of: what the picture's size decides
     // That shine on surfaces: of "beams", or the first of "suns" without a medium.
     uint32_t num_suns;
     uint32_t num_directional; // lights before the lamps in "lights"

@@ -45,9 +45,7 @@ vec2 shade_middle(ivec2 block)
 
 vec3 shade_part_position(ivec2 block, float along)
 {
-    vec2 s = 2.0 * shade_middle(block) / vec2(camera.size) - 1.0;
-    vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
-                  (camera.shift.y - s.y) * camera.half_height * camera.up;
+    vec3 across = camera_across(camera, shade_middle(block));
     return camera.origin + along * camera.forward + camera_select(camera, 1.0, along) * across;
 }
 

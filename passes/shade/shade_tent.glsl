@@ -13,7 +13,7 @@
 shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
 {
     // How far a neighbour d steps off is from the facet's plane: a d + b (z' - z) + c z' d, z along the axis.
-    vec2 size = vec2(camera.size) / float(shade_step);
+    vec2 size = camera_whole(camera) / float(shade_step);
     vec3 move = 2.0 * (float(step.x) / size.x * camera.half_width * camera.right - float(step.y) / size.y * camera.half_height * camera.up);
     camera_ray ray = camera_ray_through(camera, shade_middle(block));
     float width = 2.0 * camera.half_height / size.y * camera_select(camera, 1.0, here.along), per = 1.0 / max(width, 1e-30);

@@ -20,12 +20,30 @@ vec3 camera_select(camera_block camera, vec3 parallel, vec3 perspective)
     return mix(perspective, parallel, bvec3(camera.orthographic != 0u));
 }
 
-// Ray through image position `pixel` (column + u, row + v), row 0 on top, (u, v) in [0, 1)^2.
+// Pixels of the picture, or of that of which it is a part.
+vec2 camera_whole(camera_block camera)
+{
+    return vec2(camera.size + camera.beyond);
+}
+
+// Width and height of a pixel, at 1 m (perspective) or in m.
+vec2 camera_pixel(camera_block camera)
+{
+    return 2.0 * vec2(camera.half_width, camera.half_height) / camera_whole(camera);
+}
+
+// How far image position `pixel` (column + u, row + v), row 0 on top, (u, v) in [0, 1)^2, is beside the axis: at 1 m
+// (perspective) or in m.
+vec3 camera_across(camera_block camera, vec2 pixel)
+{
+    vec2 s = 2.0 * (pixel + vec2(camera.corner)) / camera_whole(camera) - 1.0;
+    return (s.x + camera.shift.x) * camera.half_width * camera.right + (camera.shift.y - s.y) * camera.half_height * camera.up;
+}
+
+// Ray through an image position.
 camera_ray camera_ray_through(camera_block camera, vec2 pixel)
 {
-    vec2 s = 2.0 * pixel / vec2(camera.size) - 1.0;
-    vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
-                  (camera.shift.y - s.y) * camera.half_height * camera.up;
+    vec3 across = camera_across(camera, pixel);
     return camera_ray(camera_select(camera, camera.origin + across, camera.origin),
                       camera_select(camera, camera.forward, normalize(camera.forward + across)));
 }

@@ -84,11 +84,15 @@ struct camera_block { // uniform buffer "camera"
     tyn_uint background; // 1: environment seen through the medium goes into RGB
     tyn_uvec2 size;      // pixels
     tyn_vec2 shift;      // of the principal point, in half sizes (0 = centred)
+    // The picture may be a part of another, whose half sizes and shift these are: its first pixel there, and how many pixels
+    // that one has more than `size`.
+    tyn_uvec2 corner;
+    tyn_uvec2 beyond;
 };
-TYN_ASSERT_SIZE(camera_block, 80);
+TYN_ASSERT_SIZE(camera_block, 96);
 // Ray through image position (s, t) in [-1, 1], t up: perspective: direction = normalize(forward +
 // (s + shift.x) half_width right + (t + shift.y) half_height up), from origin; orthographic: origin
-// moved by that, direction forward. Pixel (x, y), row 0 on top: s = 2 (x + u) / w - 1,
+// moved by that, direction forward. Pixel (x, y) of the whole picture, row 0 on top: s = 2 (x + u) / w - 1,
 // t = 1 - 2 (y + v) / h with (u, v) in [0, 1)^2.
 
 struct env_block {     // uniform buffer "environment"

@@ -53,8 +53,8 @@ vec3 background_radiance(env_block env, sampler2D map, camera_block camera, vec3
     // d from the axis: d phi = (d.x dd.z - d.z dd.x) / rho^2, d theta = (d.y d.dd - dd.y) / rho. A box as wide as
     // the root of the sum of squares has the footprint's variance.
     float scale = camera_select(camera, 0.0, 2.0 * side * dot(direction, camera.forward));
-    vec3 across = scale * camera.half_width / float(camera.size.x) * environment_map_direction(env, camera.right);
-    vec3 down = scale * camera.half_height / float(camera.size.y) * environment_map_direction(env, camera.up);
+    vec3 across = scale * camera.half_width / camera_whole(camera).x * environment_map_direction(env, camera.right);
+    vec3 down = scale * camera.half_height / camera_whole(camera).y * environment_map_direction(env, camera.up);
     float rho2 = max(d.x * d.x + d.z * d.z, 1e-12);
     vec2 phi = (d.x * vec2(across.z, down.z) - d.z * vec2(across.x, down.x)) / rho2;
     vec2 theta = (d.y * vec2(dot(d, across), dot(d, down)) - vec2(across.y, down.y)) * inversesqrt(rho2);

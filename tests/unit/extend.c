@@ -43,7 +43,7 @@ static void layout(void **state)
         SIZE(tyn_ref, 8),
         SIZE(tyn_lattice_shape, 44),
         SIZE(tyn_lights, 8716),
-        SIZE(tyn_frame_scene, 27184),
+        SIZE(tyn_frame_scene, 27200),
         SIZE(tyn_scene_refs, 296),
         SIZE(tyn_job, 408),
         SIZE(tyn_picture, 24),
@@ -59,7 +59,7 @@ static void layout(void **state)
         SIZE(struct medium_block, 196),
         SIZE(struct shape_block, 248),
         SIZE(struct light_block, 64),
-        SIZE(struct camera_block, 80),
+        SIZE(struct camera_block, 96),
         SIZE(struct env_block, 112),
         SIZE(struct beam_block, 204),
         SIZE(struct radial_block, 51216),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 6);
+    assert_int_equal(TYN_EXTEND_ABI, 7);
     assert_int_equal(changed, 0);
 }
 

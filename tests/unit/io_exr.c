@@ -393,6 +393,54 @@ static void damaged_piz(void **state)
     }
 }
 
+// Three channels of half floats and one of integers, which is left out, wherever it lies among them.
+static void left_out(void **state)
+{
+    (void)state;
+    static const char *names[4] = {"A", "B", "G", "R"};
+    static const uint16_t halves[4] = {0x3c00, 0x4000, 0x4200, 0x4400}; // 1 to 4
+    for (int left = 0; left < 4; left++) {
+        const char *path = io_path("left.exr");
+        exr_context_t context;
+        int part;
+        assert_int_equal(exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL), 0);
+        exr_add_part(context, "one", EXR_STORAGE_SCANLINE, &part);
+        exr_initialize_required_attr_simple(context, 0, 12, 12, EXR_COMPRESSION_NONE);
+        for (int c = 0; c < 4; c++) {
+            exr_add_channel(context, 0, names[c], c == left ? EXR_PIXEL_UINT : EXR_PIXEL_HALF,
+                            EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        }
+        assert_int_equal(exr_write_header(context), 0);
+        for (int y = 0; y < 12; y++) {
+            uint8_t line[12 * (3 * 2 + 4)];
+            size_t at = 0;
+            for (int c = 0; c < 4; c++) {
+                for (int x = 0; x < 12; x++) {
+                    const uint32_t value = c == left ? 0xdeadbeef : halves[c];
+                    const size_t size = c == left ? 4 : 2;
+                    memcpy(line + at, &value, size); // of little endian
+                    at += size;
+                }
+            }
+            exr_write_scanline_chunk(context, 0, y, line, at);
+        }
+        assert_int_equal(exr_finish(&context), 0);
+        tyn_image_file image;
+        io_log log;
+        io_log_init(&log);
+        assert_int_equal(tyn_exr_read(&image, path, &log.log), TYN_OK);
+        assert_int_equal(image.num_channels, 3);
+        for (int c = 0; c < 4; c++) {
+            const float *data = tyn_image_file_channel(&image, names[c]);
+            assert_true((data == NULL) == (c == left));
+            for (int i = 0; data && i < 144; i++) {
+                assert_true(data[i] == (float)(c + 1));
+            }
+        }
+        tyn_image_file_finish(&image);
+    }
+}
+
 static void kinds(void **state)
 {
     tyn_image_file image;
@@ -571,20 +619,14 @@ static void real_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(round_trip),
-                                       cmocka_unit_test(windows),
-                                       cmocka_unit_test(attributes),
-                                       cmocka_unit_test(incompressible),
-                                       cmocka_unit_test(refused_channels),
-                                       cmocka_unit_test(saturation),
-                                       cmocka_unit_test(environments),
-                                       cmocka_unit_test(primaries),
-                                       cmocka_unit_test(partial_maps),
-                                       cmocka_unit_test(kinds),
-                                       cmocka_unit_test(broken),
-                                       cmocka_unit_test(damaged_piz),
-                                       cmocka_unit_test(png),
-                                       cmocka_unit_test(png_refusals),
-                                       cmocka_unit_test(real_file)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip),       cmocka_unit_test(windows),
+        cmocka_unit_test(attributes),       cmocka_unit_test(incompressible),
+        cmocka_unit_test(refused_channels), cmocka_unit_test(saturation),
+        cmocka_unit_test(environments),     cmocka_unit_test(primaries),
+        cmocka_unit_test(partial_maps),     cmocka_unit_test(kinds),
+        cmocka_unit_test(broken),           cmocka_unit_test(damaged_piz),
+        cmocka_unit_test(left_out),         cmocka_unit_test(png),
+        cmocka_unit_test(png_refusals),     cmocka_unit_test(real_file)};
     return run_cases(tests, NULL, io_test_clean);
 }

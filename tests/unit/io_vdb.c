@@ -97,6 +97,24 @@ static void stored_values(void **state)
     }
 }
 
+// A blank among the digits of the UUID, which the library leaves out: all that follows is a byte farther then.
+static void uuids(void **state)
+{
+    (void)state;
+    void *whole = NULL;
+    size_t size = 0;
+    io_log log;
+    io_log_init(&log);
+    assert_true(vdb_file_write(0, io_path("whole.vdb")));
+    assert_int_equal(tyn_file_read(io_path("whole.vdb"), 1 << 24, &whole, &size, &log.log), TYN_OK);
+    ((uint8_t *)whole)[21 + 24] = '\r';
+    tyn_volume v;
+    assert_int_equal(tyn_volume_load(&v, io_put("blank.vdb", whole, size), NULL, NULL, &log.log),
+                     TYN_ERR_PARAMS);
+    assert_non_null(strstr(log.last, "is no UUID"));
+    free(whole);
+}
+
 // A byte is changed, at places all over the file: it is read, or there is one line. What is not freed then is told by
 // the address sanitizer alone.
 static void damaged(void **state)
@@ -139,7 +157,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(real_file), cmocka_unit_test(broken),
 #ifdef HAVE_VDB_FILES
-                                       cmocka_unit_test(stored_values), cmocka_unit_test(damaged)
+                                       cmocka_unit_test(stored_values), cmocka_unit_test(uuids),
+                                       cmocka_unit_test(damaged)
 #endif
     };
     return run_cases(tests, NULL, io_test_clean);

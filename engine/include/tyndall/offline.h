@@ -26,6 +26,9 @@ TYN_API void tyn_offline_destroy(tyn_offline **off);
 // Prepares if needed, records one frame, submits and waits. Progressive methods: one call adds
 // view->num_samples samples, split into dispatches that respect the time limit of the device. After an error what was
 // accumulated is lost: begin again with view->first_sample 0.
+//
+// Of a part of a picture (view->whole) methods that are not progressive render up to 63 pixels more on a side, so that
+// its pixels are those of the whole picture, by the defaults of what shares light between pixels. That size has to fit the device.
 TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                                      bool recompute);
 // A foreign density image, depth or composite target cannot be given here.
@@ -39,6 +42,7 @@ TYN_API void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void 
 // asked for, and the outputs are of these.
 TYN_API uint32_t tyn_offline_samples(const tyn_offline *off);
 
+// NULL: the frame has not made it, or there is no memory. Valid until the next frame, or the next call for the same output.
 TYN_API const void *tyn_offline_output(tyn_offline *off, tyn_output output);
 // Of the last frame: times, dispatches and work of a node are sums over the frame's records.
 TYN_API void tyn_offline_report(tyn_offline *off, tyn_report *report);
