@@ -403,9 +403,9 @@ static void build_camera(tyn_frame_scene *out, const tyn_view *view, const tyn_f
     b->background = !view->no_background;
     b->size[0] = view->width;
     b->size[1] = view->height;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2 && view->whole[0]; i++) {
         b->corner[i] = view->corner[i];
-        b->beyond[i] = view->whole[0] ? view->whole[i] - b->size[i] : 0;
+        b->beyond[i] = view->whole[i] - b->size[i];
     }
     b->shift[0] = (float)p->shift[0];
     b->shift[1] = (float)p->shift[1];

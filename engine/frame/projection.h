@@ -2,8 +2,8 @@
 #pragma once
 #include <tyndall/context.h>
 
-// Pixel (x, y) of the whole picture, width x height, row 0 on top, is at s = 2 (x + 0.5) / width - 1, t = 1 - 2 (y + 0.5) / height. Its ray:
-// perspective from `origin` along forward + (s + shift[0]) half[0] right + (t + shift[1]) half[1] up; orthographic along
+// Pixel (x, y) of the whole picture, width x height, row 0 on top, is at s = 2 (x + 0.5) / width - 1,
+// t = 1 - 2 (y + 0.5) / height. Its ray: perspective from `origin` along forward + (s + shift[0]) half[0] right + (t + shift[1]) half[1] up; orthographic along
 // `forward`, from origin + the same across. Vectors are unit and at right angles, `right` and `up` in either sense.
 typedef struct tyn_frame_projection {
     double origin[3], right[3], up[3], forward[3]; // world, m

@@ -82,7 +82,6 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
         job->refs.shown_camera.resource != 0; // of which `frame` has not the camera
     if (!impostor) {
         memcpy(params->whole, job->view->whole, sizeof params->whole);
-        memcpy(params->corner, job->view->corner, sizeof params->corner);
     }
     if (!params->repeat && !impostor) { // else it is to be seen everywhere
         tyn_raymarch_window(params, &frame->camera);

@@ -4,11 +4,20 @@
 #include <math.h>
 #include <string.h>
 
+// Of the whole picture that the view is a part of, pixels: what the picture's size decides is the same in its parts.
+static void whole_size(const tyn_job *job, uint32_t whole[2])
+{
+    const struct camera_block *c = &job->frame->camera;
+    whole[0] = c->size[0] + c->beyond[0];
+    whole[1] = c->size[1] + c->beyond[1];
+}
+
 // All samples of a picture are in one image, which has no more texels along a side than the device can draw.
 static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
 {
-    const uint32_t *whole = job->view->whole[0] ? job->view->whole : params->size;
-    const uint32_t longest = whole[0] > whole[1] ? whole[0] : whole[1]; // a part has as many
+    uint32_t whole[2];
+    whole_size(job, whole);
+    const uint32_t longest = whole[0] > whole[1] ? whole[0] : whole[1];
     const int32_t most = (int32_t)(side / longest), asked = params->samples;
     if (asked > most && asked > 1) {
         params->samples = most > 1 ? most : 1;
@@ -106,7 +115,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.mode = job->frame->medium.mode;
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
-    memcpy(params.whole, job->view->whole[0] ? job->view->whole : params.size, sizeof params.whole);
+    whole_size(job, params.whole);
     params.num_suns = tyn_num_beams(&job->frame->lights);
     params.num_directional = job->frame->lights.num_directional;
     const bool media =

@@ -181,7 +181,7 @@ void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block 
     const float ends[2] = {(float)whole.x, (float)whole.y};
     params->across = 1;
     for (int i = 0; i < 2; i++) {
-        const float corner = (float)params->corner[i];
+        const float corner = (float)camera->corner[i];
         float a = floorf(0.5f * (from[i] + 1) * ends[i]) - 1, // of the whole picture
             b = ceilf(0.5f * (to[i] + 1) * ends[i]) + 1;
         a = fminf(nodes * floorf(fmaxf(a, 0) / nodes), ends[i]);

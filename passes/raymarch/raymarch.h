@@ -33,8 +33,7 @@ typedef struct tyn_raymarch_params {
     uint32_t one_channel; // 1: inscatter has one channel, to be multiplied with `tint`
     float tint[3];
     uint32_t width, height;
-    // Not {0}: of the picture that this is a part of, from `corner` on (tyn_view).
-    uint32_t whole[2], corner[2];
+    uint32_t whole[2];  // not {0}: of the picture that this is a part of (tyn_view)
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
     float majorant;     // of sigma_t, 1/m; 0: not known
