@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """view.py TYNDALL SCENES HELPERS [PICTURES] -- `tyndall view` under Xvfb, used by keys and mouse through xdotool.
 
-TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop, lose.so, hold.so, hidpi.so, fault.so (drop.c, ...). Screens
-are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES the screens are written
-there as PNG. VIEW_TESTS names the tests to run, else all; VIEW_PLUGIN is a plugin with method "diffusion", for test_plugin
-(tests/cli/plugin.sh builds it). Exit 77: skipped, as something is missing.
+TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop, lose.so, hold.so, hidpi.so, fault.so
+(drop.c, ...). Screens are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES
+the screens are written there as PNG. VIEW_TESTS names the tests to run, else all; VIEW_PLUGIN is a plugin with method
+"diffusion", for test_plugin (tests/cli/plugin.sh builds it). Exit 77: skipped, as something is missing.
 """
 import json
 import math
