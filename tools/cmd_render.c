@@ -621,8 +621,10 @@ static const option output_table[] = {
      "changes by up to 1 %"},
     {0, "crop", OPT_TEXT, AT(crop), "X,Y,WxH",
      "only these pixels, from column X and row Y on: by default settings those of the whole "
-     "picture, but for the noise of 'path'. Of an .exr they are the data window in the whole's "
-     "display window. Parts of one picture by 'path' want a --seed each"},
+     "picture, but for the noise of 'path' and rounding at edges of surfaces "
+     "(docs/surfaces.md). Up to 63 more on a side are rendered for that. Of an .exr they are the "
+     "data window in the whole's display window. Parts of one picture by 'path' want a --seed "
+     "each"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",

@@ -45,6 +45,12 @@ static tyn_result check_resume(const tyn_context *ctx, const tyn_view *view, uin
     return TYN_OK;
 }
 
+uint32_t tyn_frame_most_pixels(const tyn_device *dev)
+{
+    const uint32_t side = dev->properties.limits.maxImageDimension2D;
+    return side < 16384 ? side : 16384;
+}
+
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
 {
     const tyn_log *log = &ctx->dev->log;
@@ -58,8 +64,7 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
     if (outputs & ~ctx->method->info.outputs) {
         return refuse_outputs(ctx, outputs & ~ctx->method->info.outputs);
     }
-    const uint32_t side = ctx->dev->properties.limits.maxImageDimension2D;
-    const uint32_t most = side < 16384 ? side : 16384;
+    const uint32_t most = tyn_frame_most_pixels(ctx->dev);
     if (!view->width || !view->height || view->width > most || view->height > most) {
         FAULT("size is %u x %u; each side must be 1 to %u pixels", view->width, view->height, most);
     }

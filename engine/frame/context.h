@@ -60,6 +60,7 @@ tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene);
 uint64_t tyn_phase_tables_hash(const tyn_scene *scene); // 0: there are none
 // check.c: are the frame's numbers fit?
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame);
+uint32_t tyn_frame_most_pixels(const tyn_device *dev); // along a side of a picture
 // check_images.c: are the images fit that the host lends? Of a frame whose scene is.
 tyn_result tyn_frame_check_images(const tyn_context *ctx, const tyn_frame *frame, uint32_t outputs);
 // ... and have those a content that are read? Of a frame that has been declared and is to be recorded.

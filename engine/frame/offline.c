@@ -1,5 +1,6 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
+#include "frame/context.h"
 #include "frame/submission.h"
 #include "base/given.h"
 #include <stdlib.h>
@@ -7,9 +8,9 @@
 #include <time.h>
 
 // A part of a picture is rendered with a margin and from a multiple of pixels on, so that each pixel has the neighbours that it
-// has in the whole picture, and grids and patterns of pixels begin at the same places: nodes of raymarch.h and its 8 x 8 first
-// steps, the display's dither, and blocks of shade.h, by their defaults. Those of `shade` reach farthest: five blocks of two
-// pixels, and two on their other sides.
+// has in the whole picture, and grids of pixels begin at the same places. By default settings patterns of `shade` are of 5 x 5
+// blocks of two pixels, first steps of the march and the display's dither of 8 x 8 pixels: both begin every 40 pixels. Light
+// comes to a pixel from at most five blocks or a few nodes of four pixels away: the margin is twice that.
 enum { PART_PERIOD = 40, PART_MARGIN = 24 };
 
 // What of a rendered picture is asked for, pixels.
@@ -164,9 +165,10 @@ static bool is_part(const tyn_view *view, uint32_t size, int axis)
     return size >= 1 && whole <= 65536 && size <= whole && view->corner[axis] <= whole - size;
 }
 
-// What is rendered for `view`: of what is no part (it will be refused) and for progressive methods, where no pixel depends on
-// others, what is asked for.
-static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool progressive)
+// What is rendered for `view`: of what is no part (it will be refused) and for progressive methods, whose pixels depend on no
+// others, what is asked for. `most` pixels along a side can be rendered: what with its margin is more has none.
+static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool progressive,
+                              uint32_t most)
 {
     tyn_view all = *view;
     uint32_t *size[2] = {&all.width, &all.height};
@@ -176,9 +178,14 @@ static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool prog
     }
     for (int a = 0; a < 2; a++) {
         const uint32_t from = view->corner[a], first = from > PART_MARGIN ? from - PART_MARGIN : 0;
-        const uint32_t end = from + *size[a] + PART_MARGIN;
-        all.corner[a] = first / PART_PERIOD * PART_PERIOD;
-        *size[a] = (end < view->whole[a] ? end : view->whole[a]) - all.corner[a];
+        const uint32_t begin = first / PART_PERIOD * PART_PERIOD,
+                       margin_end = from + *size[a] + PART_MARGIN,
+                       end = margin_end < view->whole[a] ? margin_end : view->whole[a];
+        if (end - begin > most) {
+            continue;
+        }
+        all.corner[a] = begin;
+        *size[a] = end - begin;
         shown->corner[a] = from - all.corner[a];
         shown->rendered[a] = *size[a];
     }
@@ -192,7 +199,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
         return TYN_ERR_PARAMS;
     }
     shown_part shown;
-    tyn_view part = rendered_view(&shown, view, off->progressive);
+    tyn_view part = rendered_view(&shown, view, off->progressive, tyn_frame_most_pixels(off->dev));
     tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
     uint32_t batch = tyn_context_batch(off->context, &frame);
     uint32_t samples = view->num_samples ? view->num_samples : 1;

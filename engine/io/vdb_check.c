@@ -366,14 +366,15 @@ static void walk_tree(walk *w, const value_type *t)
 
 // ---- the file ---------------------------------------------------------------------------------
 
-// What the file is known by: 32 digits and four dashes. Of others the library reads more or fewer bytes: it leaves out blanks.
+// The file's UUID: 32 hexadecimal digits and four dashes. OpenVDB reads it by characters and leaves out blanks: of other text
+// it would take more than these 36 bytes, and all that follows would be read from the wrong place.
 static void walk_uuid(walk *w)
 {
     const uint8_t *b = take(w, 36);
     for (int i = 0; b && i < 36 && !w->fault; i++) {
         const bool dash = i == 8 || i == 13 || i == 18 || i == 23;
         if (dash ? b[i] != '-' : !isxdigit(b[i])) {
-            fail(w, "is damaged: what it is known by is no UUID", "");
+            fail(w, "is damaged: its UUID is not 32 hexadecimal digits and 4 dashes", "");
         }
     }
 }

@@ -15,16 +15,14 @@ static void whole_size(const tyn_job *job, uint32_t whole[2])
 // All samples of a picture are in one image, which has no more texels along a side than the device can draw.
 static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
 {
-    uint32_t whole[2];
-    whole_size(job, whole);
-    const uint32_t longest = whole[0] > whole[1] ? whole[0] : whole[1];
+    const uint32_t *size = params->size, longest = size[0] > size[1] ? size[0] : size[1];
     const int32_t most = (int32_t)(side / longest), asked = params->samples;
     if (asked > most && asked > 1) {
         params->samples = most > 1 ? most : 1;
         tyn_job_warn(job,
                      "%u x %u pixels with %d x %d samples of the surfaces are more than this "
                      "device draws (%u along a side): %d x %d, edges are less smooth",
-                     whole[0], whole[1], asked, asked, side, params->samples, params->samples);
+                     size[0], size[1], asked, asked, side, params->samples, params->samples);
     }
 }
 

@@ -59,10 +59,16 @@ static const tyn_param params[] = {
      "is taken; 0 = 2, in small pictures 1"},
 };
 
+// Of the picture, or of that of which it is a part, pixels.
+static const uint32_t *whole_of(const tyn_shade_params *p)
+{
+    return p->whole[0] ? p->whole : p->size;
+}
+
 // Pixels along each side of a block that has one place for smooth light.
 static uint32_t step_of(const tyn_shade_params *p, bool smooth)
 {
-    const uint32_t shorter = p->whole[0] < p->whole[1] ? p->whole[0] : p->whole[1];
+    const uint32_t *whole = whole_of(p), shorter = whole[0] < whole[1] ? whole[0] : whole[1];
     return !smooth ? 1 : p->step ? (uint32_t)p->step : shorter < SHADE_STEP_FROM ? 1 : SHADE_STEP;
 }
 
@@ -134,7 +140,7 @@ static void record(tyn_recorder *r, const void *data)
     features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
     const uint32_t step = step_of(p, shared || tyn_rec_has(r, PORT(MOMENTS)));
-    const tyn_extent blocks = blocks_of(p->size, step), of_whole = blocks_of(p->whole, step);
+    const tyn_extent blocks = blocks_of(p->size, step), of_whole = blocks_of(whole_of(p), step);
     const uint32_t shorter = of_whole.x < of_whole.y ? of_whole.x : of_whole.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;

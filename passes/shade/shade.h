@@ -15,7 +15,7 @@ typedef struct tyn_shade_params {
     // Set by the method:
     uint32_t mode;     // TYN_MEDIUM_*
     uint32_t size[2];  // of the picture, pixels
-    uint32_t whole[2]; // of the picture that this is a part of: what the picture's size decides
+    uint32_t whole[2]; // not {0}: of the picture that this is a part of; it decides instead
     // That shine on surfaces: of "beams", or the first of "suns" without a medium.
     uint32_t num_suns;
     uint32_t num_directional; // lights before the lamps in "lights"

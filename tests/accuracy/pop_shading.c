@@ -118,8 +118,8 @@ static void blocks_of_pixels(void **state)
 {
     static const struct {
         const char *scene;
-        double off,
-            mean; // a third above what is observed (off), where blocks have one place for smooth light
+        double off; // a third above what is observed, where blocks have one place for smooth light
+        double mean;
     } cases[] = {
         {"vpl-cave", 0.035, 0.002},
         {"cornell-smoke", 0.014, 4e-4},

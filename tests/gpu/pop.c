@@ -323,6 +323,46 @@ static void unsettled_channel(void **state)
     }
 }
 
+// A part of a picture is the same values as in the whole one, also where it is as wide as a picture may be: then no margin is
+// rendered beside it.
+static void parts(void **state)
+{
+    enum { WHOLE = 200, X = 131, Y = 97, WIDTH = 69, HEIGHT = 30 };
+    stage *s = set_stage(*state, 4);
+    s->view.width = s->view.height = WHOLE;
+    show(s);
+    float *whole = malloc(sizeof(float) * 4 * WHOLE * WHOLE);
+    assert_non_null(whole);
+    memcpy(whole, tyn_offline_output(s->off, TYN_OUTPUT_RADIANCE),
+           sizeof(float) * 4 * WHOLE * WHOLE);
+    s->view.whole[0] = s->view.whole[1] = WHOLE;
+    s->view.corner[0] = X;
+    s->view.corner[1] = Y;
+    s->view.width = WIDTH;
+    s->view.height = HEIGHT;
+    show(s);
+    const float *part = tyn_offline_output(s->off, TYN_OUTPUT_RADIANCE);
+    double most = 0, sum = 0;
+    for (int i = 0; i < 4 * WIDTH * HEIGHT; i++) {
+        const int of_whole = 4 * ((Y + i / (4 * WIDTH)) * WHOLE + X) + i % (4 * WIDTH);
+        most = maximum(most, fabs((double)part[i] - (double)whole[of_whole]));
+        sum += (double)part[i];
+    }
+    free(whole);
+    print_message("mean %g, a value at most %g off the whole picture's\n",
+                  sum / (4 * WIDTH * HEIGHT), most);
+    assert_true(sum > 0.05 * 4 * WIDTH * HEIGHT && most < 1e-6);
+    tyn_view *wide = &s->view;
+    wide->whole[0] = 20000;
+    wide->whole[1] = 64;
+    wide->corner[0] = 100;
+    wide->corner[1] = 20;
+    wide->width = 16384;
+    wide->height = 8;
+    show(s);
+    strike(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,6 +375,7 @@ int main(void)
         cmocka_unit_test(suns_add_up),
         cmocka_unit_test(unsettled),
         cmocka_unit_test(unsettled_channel),
+        cmocka_unit_test(parts),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -113,7 +113,7 @@ static void once_through_a_slit(void **state)
 }
 
 // One ray for 2x2 pixels: as good as all rays, with a shaft's edges, those of the plates, and the fog's, over views of
-// other pixels: a single view's worst pixel is .8 to 1.4 times as far off, by where the rays fall.
+// other pixels: a single view's worst pixel is .8 to 1.44 times as far off, by where the rays fall.
 static void sparse_rays(void **state)
 {
     gpu_test *t = *state;
@@ -127,7 +127,7 @@ static void sparse_rays(void **state)
         "lattice.cells=24 raymarch.sparse=0",
         "lattice.cells=24 raymarch.sparse=1",
     };
-    double sum = 0, apart[3] = {0}, worst[3] = {0};
+    double sum = 0, apart[3] = {0}, worst[3] = {0}, most = 0;
     uint32_t differ = 0;
     for (int v = 0; v < VIEWS; v++) {
         const float from[3] = {1.2f + 0.03f * (float)(v % 4), 1.0f + 0.03f * (float)(v / 4), 2.6f};
@@ -152,6 +152,7 @@ static void sparse_rays(void **state)
             differ += pictures[2].rgb[i] != pictures[1].rgb[i];
         }
         sum += light;
+        most = maximum(most, worst_here[2] / worst_here[1]);
         for (int k = 0; k < 3; k++) {
             worst[k] += worst_here[k] / VIEWS;
             picture_free(&pictures[k]);
@@ -164,6 +165,7 @@ static void sparse_rays(void **state)
     assert_true(differ > VIEWS * VALUES / 30); // else nothing was saved
     assert_within(apart[2] / apart[1], 1.3, NULL);
     assert_within(worst[2] / worst[1], 1.1, NULL);
+    assert_within(most, 1.7, NULL);
     tyn_scene_finish(&scene);
 }
 

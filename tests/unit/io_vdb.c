@@ -111,7 +111,7 @@ static void uuids(void **state)
     tyn_volume v;
     assert_int_equal(tyn_volume_load(&v, io_put("blank.vdb", whole, size), NULL, NULL, &log.log),
                      TYN_ERR_PARAMS);
-    assert_non_null(strstr(log.last, "is no UUID"));
+    assert_non_null(strstr(log.last, "its UUID is not"));
     free(whole);
 }
 

@@ -45,7 +45,9 @@ class Viewer:
         else:
             command.append("--no-panel")
         environment = dict(screen.environment, **(environment or {}))
-        environment["LD_PRELOAD"] = ":".join(filter(None, [os.path.join(HELPERS, "fault.so"), environment.get("LD_PRELOAD")]))
+        helpers = [os.path.join(HELPERS, "fault.so"), environment.get("LD_PRELOAD")]
+        environment["LD_PRELOAD"] = ":".join(path for path in helpers if path and os.path.exists(path))
+        environment.setdefault("ASAN_OPTIONS", "verify_asan_link_order=0") # what is preloaded comes first
         self.process = subprocess.Popen(command, env=environment, cwd=work, stdout=self.log, stderr=subprocess.STDOUT)
         screen.viewers.append(self)
         screen.do("mousemove", WIDTH // 2, HEIGHT // 2)
@@ -691,7 +693,7 @@ def run(test):
         finally:
             screen.close()
         by_driver = any(viewer.ended_by_driver() for viewer in screen.viewers)
-        print(f"{test.__name__}: {'failed' if len(failures) > before else 'passed'}{', by the driver' if by_driver else ''}, "
+        print(f"{test.__name__}: {'failed' if len(failures) > before else 'passed'}{', ended in a thread of the driver' if by_driver else ''}, "
               f"{time.time() - start:.0f} s", flush=True)
         return by_driver
 

@@ -137,7 +137,8 @@ typedef struct tyn_view {
     tyn_camera camera;
     uint32_t width, height; // pixels, 1..16384
     // Not {0}: the picture is a part of one of `whole` (width, height), which camera or matrices are of, from `corner` (column,
-    // row) on.
+    // row) on. Its pixels are those of the whole picture where it begins at multiples of 40 pixels and not within 24 of its
+    // borders: tyn_offline renders such a part and gives the pixels that were asked for.
     uint32_t whole[2], corner[2];
     uint32_t outputs;   // set of tyn_output; 0 = RADIANCE
     bool no_background; // RGB is the medium alone, premultiplied

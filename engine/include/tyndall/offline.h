@@ -28,7 +28,9 @@ TYN_API void tyn_offline_destroy(tyn_offline **off);
 // accumulated is lost: begin again with view->first_sample 0.
 //
 // Of a part of a picture (view->whole) methods that are not progressive render up to 63 pixels more on a side, so that
-// its pixels are those of the whole picture, by the defaults of what shares light between pixels. That size has to fit the device.
+// its pixels are those of the whole picture, by the defaults of what shares light between pixels and but for rounding
+// (docs/surfaces.md, "Limits"). The report and its times are of all that is rendered. Where that is more pixels along a side
+// than a picture may have, there is no margin.
 TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                                      bool recompute);
 // A foreign density image, depth or composite target cannot be given here.
