@@ -1,6 +1,7 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
 #include "frame/context.h"
+#include "frame/projection.h"
 #include "frame/submission.h"
 #include "base/given.h"
 #include <stdlib.h>
@@ -159,12 +160,6 @@ static void add_record(tyn_offline *off)
     }
 }
 
-static bool is_part(const tyn_view *view, uint32_t size, int axis)
-{
-    const uint32_t whole = view->whole[axis];
-    return size >= 1 && whole <= 65536 && size <= whole && view->corner[axis] <= whole - size;
-}
-
 // What is rendered for `view`: of what is no part (it will be refused) and for progressive methods, whose pixels depend on no
 // others, what is asked for. `most` pixels along a side can be rendered: what with its margin is more has none.
 static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool progressive,
@@ -173,7 +168,7 @@ static tyn_view rendered_view(shown_part *shown, const tyn_view *view, bool prog
     tyn_view all = *view;
     uint32_t *size[2] = {&all.width, &all.height};
     *shown = (shown_part){{0, 0}, {view->width, view->height}, {view->width, view->height}};
-    if (progressive || !is_part(view, view->width, 0) || !is_part(view, view->height, 1)) {
+    if (progressive || !tyn_frame_is_part(view)) {
         return all;
     }
     for (int a = 0; a < 2; a++) {

@@ -207,19 +207,16 @@ static tyn_result from_camera(tyn_frame_projection *out, const tyn_frame *frame,
     return TYN_OK;
 }
 
-// Refuses what is no part of the whole picture.
-static tyn_result check_part(const tyn_view *view, const tyn_log *log)
+bool tyn_frame_is_part(const tyn_view *view)
 {
     const uint32_t size[2] = {view->width, view->height};
+    bool part = true;
     for (int a = 0; a < 2; a++) {
-        const uint32_t whole = view->whole[a], corner = view->corner[a];
-        if (whole > 65536 || size[a] > whole || corner > whole - size[a]) {
-            FAULT("view: %u x %u pixels from (%u, %u) on are no part of %u x %u (65536 at most)",
-                  size[0], size[1], view->corner[0], view->corner[1], view->whole[0],
-                  view->whole[1]);
-        }
+        const uint32_t whole = view->whole[a];
+        part = part && size[a] >= 1 && whole <= 65536 && size[a] <= whole &&
+               view->corner[a] <= whole - size[a];
     }
-    return TYN_OK;
+    return part;
 }
 
 tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame *frame,
@@ -235,8 +232,10 @@ tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame 
     }
     const tyn_view *view = frame->view;
     const bool part = view->whole[0] || view->whole[1];
-    if (part && check_part(view, log) != TYN_OK) {
-        return TYN_ERR_PARAMS;
+    if (part && !tyn_frame_is_part(view)) {
+        FAULT("view: %u x %u pixels from (%u, %u) on are no part of %u x %u (65536 at most)",
+              view->width, view->height, view->corner[0], view->corner[1], view->whole[0],
+              view->whole[1]);
     }
     if (!finite_floats(frame->jitter, 2)) {
         FAULT("jitter is %g, %g; it must be finite, pixels", frame->jitter[0], frame->jitter[1]);

@@ -4,25 +4,18 @@
 #include <math.h>
 #include <string.h>
 
-// Of the whole picture that the view is a part of, pixels: what the picture's size decides is the same in its parts.
-static void whole_size(const tyn_job *job, uint32_t whole[2])
-{
-    const struct camera_block *c = &job->frame->camera;
-    whole[0] = c->size[0] + c->beyond[0];
-    whole[1] = c->size[1] + c->beyond[1];
-}
-
 // All samples of a picture are in one image, which has no more texels along a side than the device can draw.
 static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
 {
-    const uint32_t *size = params->size, longest = size[0] > size[1] ? size[0] : size[1];
+    const uint32_t longest = params->size[0] > params->size[1] ? params->size[0] : params->size[1];
     const int32_t most = (int32_t)(side / longest), asked = params->samples;
     if (asked > most && asked > 1) {
         params->samples = most > 1 ? most : 1;
         tyn_job_warn(job,
                      "%u x %u pixels with %d x %d samples of the surfaces are more than this "
                      "device draws (%u along a side): %d x %d, edges are less smooth",
-                     size[0], size[1], asked, asked, side, params->samples, params->samples);
+                     params->size[0], params->size[1], asked, asked, side, params->samples,
+                     params->samples);
     }
 }
 
@@ -113,7 +106,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.mode = job->frame->medium.mode;
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
-    whole_size(job, params.whole);
+    memcpy(params.whole, job->view->whole, sizeof params.whole);
     params.num_suns = tyn_num_beams(&job->frame->lights);
     params.num_directional = job->frame->lights.num_directional;
     const bool media =

@@ -156,7 +156,7 @@ vec3 smooth_light_around(shade_point p, vec2 at, out bool alone)
 {
     vec2 x = at / float(shade_step) - 0.5, first = floor(x), f = x - first;
     ivec2 last = shade_blocks() - 1;
-    float size = float(shade_step) * 2.0 * camera.half_height / camera_whole(camera).y;
+    float size = float(shade_step) * camera_pixel(camera).y;
     size *= camera_select(camera, 1.0, dot(p.position - camera.origin, camera.forward));
     float per = 1.0 / max(size, 1e-30), best = -1e30;
     vec4 sum = vec4(0.0);
@@ -186,7 +186,7 @@ vec3 smooth_light_beside(shade_point p, vec2 at, out bool alone)
     bool near = false;
     vec2 x = at / float(shade_step);
     ivec2 last = shade_blocks() - 1;
-    float size = float(shade_step) * 2.0 * camera.half_height / camera_whole(camera).y;
+    float size = float(shade_step) * camera_pixel(camera).y;
     size *= camera_select(camera, 1.0, dot(p.position - camera.origin, camera.forward));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 9; i++) {

@@ -351,7 +351,7 @@ static void parts(void **state)
     free(whole);
     print_message("mean %g, a value at most %g off the whole picture's\n",
                   sum / (4 * WIDTH * HEIGHT), most);
-    assert_true(sum > 0.05 * 4 * WIDTH * HEIGHT && most < 1e-6);
+    assert_true(sum > 0.05 * 4 * WIDTH * HEIGHT && most == 0); // a medium alone: no edges
     tyn_view *wide = &s->view;
     wide->whole[0] = 20000;
     wide->whole[1] = 64;

@@ -40,7 +40,6 @@ void shade_start(void)
     tyn_pass_defaults(&tyn_pass_shade, &stage.params);
     stage.params.size[0] = WIDTH;
     stage.params.size[1] = HEIGHT;
-    memcpy(stage.params.whole, stage.params.size, sizeof stage.params.whole);
     stage.samples = 1;
     stage.shown = everywhere;
     stage.shadows = stage.hidden_vpl = -1;

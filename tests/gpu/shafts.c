@@ -112,8 +112,8 @@ static void once_through_a_slit(void **state)
     tyn_scene_finish(&scene);
 }
 
-// One ray for 2x2 pixels: as good as all rays, with a shaft's edges, those of the plates, and the fog's, over views of
-// other pixels: a single view's worst pixel is .8 to 1.44 times as far off, by where the rays fall.
+// One ray for 2x2 pixels: as good as all rays, with a shaft's edges, those of the plates, and the fog's. By where the
+// rays fall a single view's worst pixel is up to 1.44 times as far off: the mean of several views tells whether they all are.
 static void sparse_rays(void **state)
 {
     gpu_test *t = *state;
@@ -165,7 +165,7 @@ static void sparse_rays(void **state)
     assert_true(differ > VIEWS * VALUES / 30); // else nothing was saved
     assert_within(apart[2] / apart[1], 1.3, NULL);
     assert_within(worst[2] / worst[1], 1.1, NULL);
-    assert_within(most, 1.7, NULL);
+    assert_within(most, 1.5, NULL);
     tyn_scene_finish(&scene);
 }
 
