@@ -1,5 +1,6 @@
 // pipeline.c -- layouts and pipelines, derived from kernel tables. Who makes them when: compiler.c.
 #include "gpu/compiler.h"
+#include "gpu/specialize.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -245,40 +246,46 @@ void tyn_pipelines_destroy(tyn_device *dev)
 
 // ---- compiling ----------------------------------------------------------------------------------
 
+// With the specialization constants filled in: pipelines are given none.
 static VkResult create_module(const tyn_device *dev, const uint32_t *spirv, size_t size,
-                              VkShaderModule *out)
+                              const uint32_t *spec, uint32_t num_spec, VkShaderModule *out)
 {
-    return TYN_VK_MADE(
-        out, dev->vk.CreateShaderModule(
-                 dev->device,
-                 &(VkShaderModuleCreateInfo){.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                             .codeSize = size,
-                                             .pCode = spirv},
-                 NULL, out));
+    uint32_t *words = malloc(size);
+    const size_t count =
+        words ? tyn_spirv_specialize(spirv, size / sizeof *spirv, spec, num_spec, words) : 0;
+    VkResult made = VK_ERROR_OUT_OF_HOST_MEMORY;
+    if (count) {
+        made = TYN_VK_MADE(out, dev->vk.CreateShaderModule(
+                                    dev->device,
+                                    &(VkShaderModuleCreateInfo){
+                                        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = count * sizeof *words,
+                                        .pCode = words},
+                                    NULL, out));
+    }
+    free(words);
+    return made;
 }
 
-static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
-                                             const VkSpecializationInfo *spec)
+static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module)
 {
     return (VkPipelineShaderStageCreateInfo){
         .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
         .stage = which,
         .module = module,
         .pName = "main",
-        .pSpecializationInfo = spec->mapEntryCount ? spec : NULL,
     };
 }
 
 static VkResult create_compute(const tyn_device *dev, const tyn_pipeline *p, VkShaderModule module,
-                               const VkSpecializationInfo *spec, const void *feedback,
-                               VkPipeline *out)
+                               const void *feedback, VkPipeline *out)
 {
     return dev->vk.CreateComputePipelines(
         dev->device, dev->cache, 1,
         &(VkComputePipelineCreateInfo){
             .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
             .pNext = feedback,
-            .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, spec),
+            .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module),
             .layout = p->layout,
         },
         NULL, out);
@@ -286,8 +293,7 @@ static VkResult create_compute(const tyn_device *dev, const tyn_pipeline *p, VkS
 
 // Triangles without vertex input, viewport and scissor left to the draw, no blending.
 static VkResult create_raster(const tyn_device *dev, const tyn_pipeline *p, VkShaderModule vertex,
-                              VkShaderModule fragment, const VkSpecializationInfo *spec,
-                              const void *feedback, VkPipeline *out)
+                              VkShaderModule fragment, const void *feedback, VkPipeline *out)
 {
     const tyn_raster *raster = p->kernel->raster;
     VkFormat colors[TYN_MAX_ATTACHMENTS], depth = VK_FORMAT_UNDEFINED;
@@ -305,8 +311,8 @@ static VkResult create_raster(const tyn_device *dev, const tyn_pipeline *p, VkSh
         }
     }
     const VkPipelineShaderStageCreateInfo stages[2] = {
-        stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, spec),
-        stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, spec),
+        stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
+        stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment),
     };
     const VkDynamicState dynamic[2] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     return dev->vk.CreateGraphicsPipelines(
@@ -373,9 +379,10 @@ VkResult tyn_pipeline_compile(const tyn_device *dev, const tyn_pipeline *p, cons
     const tyn_kernel *k = p->kernel;
     const bool fragments = k->raster && k->raster->fragment;
     VkShaderModule module = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
-    VkResult made = create_module(dev, k->spirv, k->spirv_size, &module);
+    VkResult made = create_module(dev, k->spirv, k->spirv_size, spec, k->num_spec, &module);
     if (made == VK_SUCCESS && fragments) {
-        made = create_module(dev, k->raster->fragment, k->raster->fragment_size, &fragment);
+        made = create_module(dev, k->raster->fragment, k->raster->fragment_size, spec, k->num_spec,
+                             &fragment);
     }
     VkPipelineCreationFeedback whole = {0}, stages[2] = {{0}};
     const VkPipelineCreationFeedbackCreateInfo feedback = {
@@ -384,13 +391,8 @@ VkResult tyn_pipeline_compile(const tyn_device *dev, const tyn_pipeline *p, cons
         .pipelineStageCreationFeedbackCount = fragments ? 2 : 1,
         .pPipelineStageCreationFeedbacks = stages};
     if (made == VK_SUCCESS) {
-        VkSpecializationMapEntry entries[TYN_MAX_SPEC];
-        for (uint32_t i = 0; i < k->num_spec; i++) {
-            entries[i] = (VkSpecializationMapEntry){i, i * 4, 4};
-        }
-        const VkSpecializationInfo info = {k->num_spec, entries, k->num_spec * 4, spec};
-        made = k->raster ? create_raster(dev, p, module, fragment, &info, &feedback, out)
-                         : create_compute(dev, p, module, &info, &feedback, out);
+        made = k->raster ? create_raster(dev, p, module, fragment, &feedback, out)
+                         : create_compute(dev, p, module, &feedback, out);
         made = TYN_VK_MADE(out, made);
     }
     dev->vk.DestroyShaderModule(dev->device, module, NULL);

@@ -15,10 +15,8 @@
 layout(constant_id = 1) const uint constellation_features = 0u;
 layout(constant_id = 2) const uint constellation_lighting = CONSTELLATION_SHADOWED;
 
-bool constellation_has(uint feature)
-{
-    return (constellation_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define constellation_has(feature) ((constellation_features & (feature)) != 0u)
 
 layout(local_size_x = 8, local_size_y = 8) in;
 TYN_ARGS(constellation_args args);

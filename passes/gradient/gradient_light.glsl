@@ -13,10 +13,8 @@ layout(constant_id = 1) const uint gradient_features = 0u;
 const float GRADIENT_DARK = 20.0; // optical depth behind which a light is not followed: e^-20 = 2e-9
 const int GRADIENT_AT_ONCE = 4;   // steps of a ray in a turn of its loop
 
-bool gradient_has(uint feature)
-{
-    return (gradient_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define gradient_has(feature) ((gradient_features & (feature)) != 0u)
 
 // Density, or sigma_t of each channel, within the box.
 vec3 matter_at(vec3 uvw)

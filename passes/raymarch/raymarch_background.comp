@@ -24,10 +24,8 @@ layout(binding = 8, rgba32f) uniform writeonly image2D multiple_image;
 
 TYN_ARGS(raymarch_args args);
 
-bool has(uint feature)
-{
-    return (raymarch_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define has(feature) ((raymarch_features & (feature)) != 0u)
 
 void main()
 {

@@ -44,10 +44,8 @@ float spectrum_mean(vec3 x)
 }
 #endif
 
-bool raymarch_has(uint feature)
-{
-    return (raymarch_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define raymarch_has(feature) ((raymarch_features & (feature)) != 0u)
 
 // (1 - e^-x) / x with e = e^-x, x >= 0; the series where the difference would lose digits.
 float mean_attenuation(float x, float e)

@@ -43,10 +43,8 @@ TYN_UNIFORM(GBUFFER_END, environment, env_block environment);
 #include "shaders/walls/lattice_walls.glsl"
 #include "shaders/light/vpl_visibility.glsl"
 
-bool shade_has(uint feature)
-{
-    return (shade_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define shade_has(feature) ((shade_features & (feature)) != 0u)
 
 // The lattice whose light there is: call it with SHADE_LATTICE or SHADE_OUTSIDE.
 lattice_box shade_lattice()

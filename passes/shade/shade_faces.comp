@@ -28,10 +28,8 @@ TYN_READ(6, around_cells, wall_cell around_cells[]);
 
 const float PI = 3.14159265358979;
 
-bool has(uint feature)
-{
-    return (shade_features & feature) != 0u;
-}
+// A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
+#define has(feature) ((shade_features & (feature)) != 0u)
 
 // What of the light that leaves cell `index` outwards comes back from surfaces close by: those of the links that are cut
 // there, but not by walls of the lattice (`inner`).

@@ -1,0 +1,624 @@
+// specialize.c -- see specialize.h. Instructions and rules: SPIR-V 1.6, sections 2.11 (control flow) and 3.
+#include "gpu/specialize.h"
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HEADER = 5, BOUND = 3 };
+
+enum {
+    OP_NOP = 0,
+    OP_NAME = 5,
+    OP_LINE = 8,
+    OP_ENTRY_POINT = 15,
+    OP_TYPE_BOOL = 20,
+    OP_TYPE_INT = 21,
+    OP_CONSTANT_TRUE = 41,
+    OP_CONSTANT_FALSE = 42,
+    OP_CONSTANT = 43,
+    OP_CONSTANT_COMPOSITE = 44,
+    OP_SPEC_CONSTANT_TRUE = 48,
+    OP_SPEC_CONSTANT_FALSE = 49,
+    OP_SPEC_CONSTANT = 50,
+    OP_SPEC_CONSTANT_COMPOSITE = 51,
+    OP_SPEC_CONSTANT_OP = 52,
+    OP_FUNCTION = 54,
+    OP_FUNCTION_END = 56,
+    OP_FUNCTION_CALL = 57,
+    OP_STORE = 62,
+    OP_COPY_MEMORY_SIZED = 64,
+    OP_DECORATE = 71,
+    OP_IMAGE_WRITE = 99,
+    OP_IADD = 128,
+    OP_ISUB = 130,
+    OP_IMUL = 132,
+    OP_LOGICAL_EQUAL = 164,
+    OP_LOGICAL_NOT_EQUAL = 165,
+    OP_LOGICAL_OR = 166,
+    OP_LOGICAL_AND = 167,
+    OP_LOGICAL_NOT = 168,
+    OP_SELECT = 169,
+    OP_IEQUAL = 170,
+    OP_INOT_EQUAL = 171,
+    OP_UGREATER = 172,
+    OP_SGREATER = 173,
+    OP_UGREATER_EQUAL = 174,
+    OP_SGREATER_EQUAL = 175,
+    OP_ULESS = 176,
+    OP_SLESS = 177,
+    OP_ULESS_EQUAL = 178,
+    OP_SLESS_EQUAL = 179,
+    OP_SHIFT_RIGHT = 194,
+    OP_SHIFT_LEFT = 196,
+    OP_BIT_OR = 197,
+    OP_BIT_XOR = 198,
+    OP_BIT_AND = 199,
+    OP_NOT = 200,
+    OP_EMIT_VERTEX = 218,
+    OP_MEMORY_BARRIER = 225,
+    OP_ATOMIC_STORE = 228,
+    OP_PHI = 245,
+    OP_LOOP_MERGE = 246,
+    OP_SELECTION_MERGE = 247,
+    OP_LABEL = 248,
+    OP_BRANCH = 249,
+    OP_BRANCH_CONDITIONAL = 250,
+    OP_SWITCH = 251,
+    OP_UNREACHABLE = 255,
+    OP_LIFETIME_STOP = 257,
+    OP_NO_LINE = 317,
+    LAST_CORE_OP = 403,
+    DECORATION_SPEC_ID = 1,
+};
+
+// What is left of a block. A stub is a block that nothing branches to but a kept construct names.
+typedef enum block_state { DEAD = 0, MERGE_STUB, CONTINUE_STUB, LIVE } block_state;
+
+// Of one id; 0 where it is something else.
+typedef struct id_info {
+    uint32_t value;  // of a known constant
+    uint32_t spec;   // 1 + its number
+    uint32_t at;     // where a function or block begins
+    uint32_t only;   // block: its only successor, where a selection was decided
+    uint32_t header; // CONTINUE_STUB: the loop's
+    uint8_t state;   // of a block
+    bool known;      // `value` is that of a 32-bit scalar or bool
+    bool is_bool;    // type
+    bool is_word;    // type: 32-bit integer
+    bool called;     // function
+    bool gone;       // defined in code that is left out
+} id_info;
+
+typedef struct module {
+    const uint32_t *words;
+    size_t count;
+    id_info *ids;
+    uint32_t bound;
+    uint32_t *functions; // called, in the order in which they were found
+    uint32_t num_functions;
+    uint32_t *out;
+    size_t written;
+} module;
+
+static uint32_t op_at(const module *m, size_t at)
+{
+    return m->words[at] & 0xffff;
+}
+
+static size_t next(const module *m, size_t at)
+{
+    return at + (m->words[at] >> 16);
+}
+
+// Every instruction has a length, and ends within the module.
+static bool is_whole(const module *m)
+{
+    size_t at = HEADER;
+    while (at < m->count && m->words[at] >> 16) {
+        at = next(m, at);
+    }
+    return at == m->count;
+}
+
+// The id that an instruction of a function defines; 0: none.
+static uint32_t result_at(const module *m, size_t at)
+{
+    const uint32_t op = op_at(m, at);
+    if (op == OP_LABEL) {
+        return m->words[at + 1];
+    }
+    const bool none = op == OP_NOP || op == OP_LINE || op == OP_NO_LINE || op == OP_FUNCTION_END ||
+                      (op >= OP_STORE && op <= OP_COPY_MEMORY_SIZED) || op == OP_IMAGE_WRITE ||
+                      (op >= OP_EMIT_VERTEX && op <= OP_MEMORY_BARRIER) || op == OP_ATOMIC_STORE ||
+                      (op >= OP_LOOP_MERGE && op <= OP_LIFETIME_STOP) || op > LAST_CORE_OP;
+    return none ? 0 : m->words[at + 2];
+}
+
+// ---- constants ----------------------------------------------------------------------------------
+
+static bool evaluate(uint32_t op, const uint32_t v[3], uint32_t *out)
+{
+    const int32_t a = (int32_t)v[0], b = (int32_t)v[1];
+    switch (op) {
+    case OP_IADD:
+        *out = v[0] + v[1];
+        return true;
+    case OP_ISUB:
+        *out = v[0] - v[1];
+        return true;
+    case OP_IMUL:
+        *out = v[0] * v[1];
+        return true;
+    case OP_LOGICAL_EQUAL:
+    case OP_IEQUAL:
+        *out = v[0] == v[1];
+        return true;
+    case OP_LOGICAL_NOT_EQUAL:
+    case OP_INOT_EQUAL:
+        *out = v[0] != v[1];
+        return true;
+    case OP_LOGICAL_OR:
+    case OP_BIT_OR:
+        *out = v[0] | v[1];
+        return true;
+    case OP_LOGICAL_AND:
+    case OP_BIT_AND:
+        *out = v[0] & v[1];
+        return true;
+    case OP_BIT_XOR:
+        *out = v[0] ^ v[1];
+        return true;
+    case OP_LOGICAL_NOT:
+        *out = !v[0];
+        return true;
+    case OP_NOT:
+        *out = ~v[0];
+        return true;
+    case OP_SELECT:
+        *out = v[0] ? v[1] : v[2];
+        return true;
+    case OP_UGREATER:
+        *out = v[0] > v[1];
+        return true;
+    case OP_SGREATER:
+        *out = a > b;
+        return true;
+    case OP_UGREATER_EQUAL:
+        *out = v[0] >= v[1];
+        return true;
+    case OP_SGREATER_EQUAL:
+        *out = a >= b;
+        return true;
+    case OP_ULESS:
+        *out = v[0] < v[1];
+        return true;
+    case OP_SLESS:
+        *out = a < b;
+        return true;
+    case OP_ULESS_EQUAL:
+        *out = v[0] <= v[1];
+        return true;
+    case OP_SLESS_EQUAL:
+        *out = a <= b;
+        return true;
+    case OP_SHIFT_RIGHT:
+        *out = v[1] < 32 ? v[0] >> v[1] : 0;
+        return v[1] < 32;
+    case OP_SHIFT_LEFT:
+        *out = v[1] < 32 ? v[0] << v[1] : 0;
+        return v[1] < 32;
+    default:
+        return false;
+    }
+}
+
+// `operands` of an operation whose result is of `type`, into the result's info.
+static void fold(module *m, uint32_t op, uint32_t type, const uint32_t *operands, size_t num,
+                 id_info *result)
+{
+    uint32_t values[3] = {0}, num_known = 0;
+    if (op < OP_IADD || op > OP_NOT || num > 3 || !(m->ids[type].is_bool || m->ids[type].is_word)) {
+        return;
+    }
+    for (size_t i = 0; i < num; i++) {
+        const id_info *id = &m->ids[operands[i]];
+        values[i] = id->value;
+        num_known += id->known;
+        // One of the two decides.
+        if (id->known &&
+            ((op == OP_LOGICAL_AND && !id->value) || (op == OP_LOGICAL_OR && id->value))) {
+            result->known = true;
+            result->value = id->value;
+            return;
+        }
+    }
+    result->known = num_known == num && evaluate(op, values, &result->value);
+}
+
+static void read_constant(module *m, size_t at)
+{
+    const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
+    id_info *id = &m->ids[w[2]];
+    switch (op) {
+    case OP_CONSTANT_TRUE:
+    case OP_CONSTANT_FALSE:
+    case OP_SPEC_CONSTANT_TRUE:
+    case OP_SPEC_CONSTANT_FALSE:
+        id->known = true;
+        id->value = op == OP_CONSTANT_TRUE || op == OP_SPEC_CONSTANT_TRUE;
+        break;
+    case OP_CONSTANT:
+    case OP_SPEC_CONSTANT:
+        id->known = length == 4 && m->ids[w[1]].is_word;
+        id->value = w[3];
+        break;
+    case OP_SPEC_CONSTANT_OP:
+        fold(m, w[3], w[1], w + 4, length - 4, id);
+        break;
+    default:
+        break;
+    }
+}
+
+// A specialization constant takes its value before what is made of it is read.
+static void specialize(module *m, size_t at, const uint32_t *spec, uint32_t num_spec)
+{
+    const uint32_t op = op_at(m, at);
+    if (op < OP_SPEC_CONSTANT_TRUE || op > OP_SPEC_CONSTANT) {
+        return;
+    }
+    id_info *id = &m->ids[m->words[at + 2]];
+    if (id->spec && id->spec <= num_spec) {
+        id->value = op == OP_SPEC_CONSTANT ? spec[id->spec - 1] : spec[id->spec - 1] != 0;
+    } else {
+        id->spec = 0;
+    }
+}
+
+static void read_globals(module *m, const uint32_t *spec, uint32_t num_spec)
+{
+    for (size_t at = HEADER; at < m->count; at = next(m, at)) {
+        const uint32_t *w = m->words + at, op = op_at(m, at);
+        if (op == OP_DECORATE && w[2] == DECORATION_SPEC_ID) {
+            m->ids[w[1]].spec = 1 + w[3];
+        } else if (op == OP_TYPE_BOOL) {
+            m->ids[w[1]].is_bool = true;
+        } else if (op == OP_TYPE_INT) {
+            m->ids[w[1]].is_word = w[2] == 32;
+        } else if (op >= OP_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP) {
+            read_constant(m, at);
+            specialize(m, at, spec, num_spec);
+        } else if (op == OP_FUNCTION) {
+            m->ids[w[2]].at = (uint32_t)at;
+        }
+    }
+}
+
+// ---- blocks -------------------------------------------------------------------------------------
+
+static void call(module *m, uint32_t function)
+{
+    if (!m->ids[function].called) {
+        m->ids[function].called = true;
+        m->functions[m->num_functions++] = function;
+    }
+}
+
+// Is the edge taken? `parent` branches to `block` in the module as it was.
+static bool is_edge(const module *m, uint32_t parent, uint32_t block)
+{
+    const id_info *p = &m->ids[parent];
+    return (p->state == LIVE && (!p->only || p->only == block)) ||
+           (p->state == CONTINUE_STUB && p->header == block);
+}
+
+// A value that is the same along all edges that are taken. False where one comes from a block further below.
+static bool read_phi(module *m, size_t at, uint32_t block)
+{
+    const uint32_t *w = m->words + at, length = w[0] >> 16;
+    id_info *result = &m->ids[w[2]];
+    bool same = m->ids[w[1]].is_bool || m->ids[w[1]].is_word;
+    const id_info *first = NULL;
+    for (uint32_t i = 3; i + 1 < length; i += 2) {
+        if (m->ids[w[i + 1]].at > at || !m->ids[w[i + 1]].at) {
+            return false;
+        }
+        if (is_edge(m, w[i + 1], block)) {
+            const id_info *value = &m->ids[w[i]];
+            first = first ? first : value;
+            same = same && value->known && value->value == first->value;
+        }
+    }
+    result->known = same && first;
+    result->value = result->known ? first->value : 0;
+    return true;
+}
+
+// False where a block above `at` turns out to be reached from below: then blocks are not in the order that one pass over them needs.
+static bool reach(module *m, size_t at, uint32_t block, block_state state)
+{
+    id_info *b = &m->ids[block];
+    if (b->state >= (uint8_t)state) {
+        return true;
+    }
+    b->state = (uint8_t)state;
+    return b->at > at;
+}
+
+// The successors of the block that ends at `at`; `merge`: of the selection that ends it, or 0.
+static bool leave(module *m, size_t at, uint32_t block, uint32_t merge)
+{
+    const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
+    bool ordered = true;
+    if (op == OP_BRANCH_CONDITIONAL && merge && m->ids[w[1]].known) {
+        m->ids[block].only = m->ids[w[1]].value ? w[2] : w[3];
+        return reach(m, at, m->ids[block].only, LIVE);
+    }
+    if (merge) {
+        ordered = reach(m, at, merge, MERGE_STUB);
+    }
+    if (op == OP_BRANCH) {
+        ordered = reach(m, at, w[1], LIVE) && ordered;
+    } else if (op == OP_BRANCH_CONDITIONAL) {
+        ordered = reach(m, at, w[2], LIVE) && reach(m, at, w[3], LIVE) && ordered;
+    } else if (op == OP_SWITCH) { // selector, default, literals of 32 bits with their targets
+        for (uint32_t i = 2; i < length; i += 2) {
+            ordered = reach(m, at, w[i], LIVE) && ordered;
+        }
+    }
+    return ordered;
+}
+
+static bool enter_loop(module *m, size_t at, uint32_t block)
+{
+    const uint32_t *w = m->words + at;
+    id_info *target = &m->ids[w[2]];
+    if (target->state == DEAD) {
+        target->header = block;
+    }
+    return reach(m, at, w[1], MERGE_STUB) && reach(m, at, w[2], CONTINUE_STUB);
+}
+
+// An instruction of a live block. False: the function cannot be thinned.
+static bool read_live(module *m, size_t at, uint32_t block, uint32_t *merge)
+{
+    const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
+    switch (op) {
+    case OP_FUNCTION_CALL:
+        call(m, w[3]);
+        return true;
+    case OP_PHI:
+        return read_phi(m, at, block);
+    case OP_SELECTION_MERGE:
+        *merge = w[1];
+        return true;
+    case OP_LOOP_MERGE:
+        return enter_loop(m, at, block);
+    case OP_BRANCH:
+    case OP_BRANCH_CONDITIONAL:
+    case OP_SWITCH:
+        return leave(m, at, block, *merge);
+    default:
+        if (length > 3) {
+            fold(m, op, w[1], w + 3, length - 3, &m->ids[w[2]]);
+        }
+        return true;
+    }
+}
+
+static void find_blocks(module *m, size_t at)
+{
+    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
+        if (op_at(m, at) == OP_LABEL) {
+            m->ids[m->words[at + 1]].at = (uint32_t)at;
+        }
+    }
+}
+
+static bool thin(module *m, size_t at)
+{
+    uint32_t block = 0, merge = 0;
+    bool read = true, first = true;
+    for (; op_at(m, at) != OP_FUNCTION_END && read; at = next(m, at)) {
+        const uint32_t op = op_at(m, at);
+        if (op == OP_LABEL) {
+            block = m->words[at + 1];
+            merge = 0;
+            m->ids[block].state = first ? LIVE : m->ids[block].state;
+            first = false;
+        } else if (block && m->ids[block].state == LIVE) {
+            read = read_live(m, at, block, &merge);
+        } else if (op > LAST_CORE_OP) {
+            read = false; // it is not known which ids it defines
+        }
+    }
+    return read;
+}
+
+// All of it stays, and what it calls.
+static void keep_whole(module *m, size_t at)
+{
+    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
+        const uint32_t *w = m->words + at;
+        if (op_at(m, at) == OP_LABEL) {
+            m->ids[w[1]].state = LIVE;
+            m->ids[w[1]].only = 0;
+        } else if (op_at(m, at) == OP_FUNCTION_CALL) {
+            call(m, w[3]);
+        }
+    }
+}
+
+static void read_functions(module *m)
+{
+    for (size_t at = HEADER; at < m->count; at = next(m, at)) {
+        if (op_at(m, at) == OP_ENTRY_POINT) {
+            call(m, m->words[at + 2]);
+        }
+    }
+    for (uint32_t i = 0; i < m->num_functions; i++) {
+        const size_t at = m->ids[m->functions[i]].at;
+        find_blocks(m, at);
+        if (!thin(m, at)) {
+            keep_whole(m, at);
+        }
+    }
+}
+
+// ---- writing ------------------------------------------------------------------------------------
+
+static void emit(module *m, const uint32_t *words, uint32_t op, uint32_t length)
+{
+    m->out[m->written] = length << 16 | op;
+    memcpy(m->out + m->written + 1, words + 1, (length - 1) * sizeof *words);
+    m->written += length;
+}
+
+static void emit_same(module *m, size_t at)
+{
+    emit(m, m->words + at, op_at(m, at), m->words[at] >> 16);
+}
+
+static void emit_constant(module *m, size_t at)
+{
+    const uint32_t *w = m->words + at, op = op_at(m, at);
+    const id_info *id = &m->ids[w[2]];
+    if (op == OP_SPEC_CONSTANT_COMPOSITE) {
+        emit(m, w, OP_CONSTANT_COMPOSITE, w[0] >> 16);
+    } else if (op < OP_SPEC_CONSTANT_TRUE || (op == OP_SPEC_CONSTANT_OP && !id->known)) {
+        emit_same(m, at);
+    } else if (m->ids[w[1]].is_bool) {
+        emit(m, w, id->value ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE, 3);
+    } else if (id->known || id->spec) {
+        emit(m, (uint32_t[]){0, w[1], w[2], id->value}, OP_CONSTANT, 4);
+    } else {
+        emit(m, w, OP_CONSTANT, w[0] >> 16);
+    }
+}
+
+static void emit_phi(module *m, size_t at, uint32_t block)
+{
+    const uint32_t *w = m->words + at, length = w[0] >> 16;
+    uint32_t *to = m->out + m->written, kept = 3;
+    to[1] = w[1];
+    to[2] = w[2];
+    for (uint32_t i = 3; i + 1 < length; i += 2) {
+        if (is_edge(m, w[i + 1], block)) {
+            to[kept++] = w[i];
+            to[kept++] = w[i + 1];
+        }
+    }
+    to[0] = kept << 16 | OP_PHI;
+    m->written += kept;
+}
+
+static void emit_live(module *m, size_t at, uint32_t block)
+{
+    const uint32_t op = op_at(m, at), only = m->ids[block].only;
+    if (op == OP_PHI) {
+        emit_phi(m, at, block);
+    } else if (op == OP_BRANCH_CONDITIONAL && only) {
+        emit(m, (uint32_t[]){0, only}, OP_BRANCH, 2);
+    } else if (op != OP_SELECTION_MERGE || !only) {
+        emit_same(m, at);
+    }
+}
+
+static void emit_stub(module *m, uint32_t block)
+{
+    const id_info *b = &m->ids[block];
+    emit(m, (uint32_t[]){0, block}, OP_LABEL, 2);
+    if (b->state == CONTINUE_STUB) {
+        emit(m, (uint32_t[]){0, b->header}, OP_BRANCH, 2);
+    } else {
+        emit(m, (uint32_t[]){0}, OP_UNREACHABLE, 1);
+    }
+}
+
+static void emit_function(module *m, size_t at)
+{
+    uint32_t block = 0;
+    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
+        if (op_at(m, at) == OP_LABEL) {
+            block = m->words[at + 1];
+            if (m->ids[block].state == MERGE_STUB || m->ids[block].state == CONTINUE_STUB) {
+                emit_stub(m, block);
+            }
+        }
+        if (!block) {
+            emit_same(m, at);
+        } else if (m->ids[block].state == LIVE) {
+            emit_live(m, at, block);
+        }
+    }
+    emit_same(m, at);
+}
+
+// Names and decorations must not speak of what is left out.
+static void mark_gone(module *m)
+{
+    uint32_t block = 0;
+    bool called = true;
+    for (size_t at = HEADER; at < m->count; at = next(m, at)) {
+        const uint32_t *w = m->words + at, op = op_at(m, at);
+        if (op == OP_FUNCTION) {
+            called = m->ids[w[2]].called;
+            block = 0;
+        } else if (op == OP_FUNCTION_END) {
+            called = true;
+            block = 0;
+        } else if (op == OP_LABEL) {
+            block = w[1];
+        }
+        // The label of a stub stays.
+        if (!called || (block && m->ids[block].state == DEAD) ||
+            (block && m->ids[block].state != LIVE && op != OP_LABEL)) {
+            m->ids[result_at(m, at)].gone = true;
+        }
+    }
+}
+
+static void emit_all(module *m)
+{
+    bool called = true;
+    memcpy(m->out, m->words, HEADER * sizeof *m->words);
+    m->written = HEADER;
+    for (size_t at = HEADER; at < m->count; at = next(m, at)) {
+        const uint32_t *w = m->words + at, op = op_at(m, at);
+        if (op == OP_FUNCTION) {
+            called = m->ids[w[2]].called;
+            if (called) {
+                emit_function(m, at);
+            }
+            while (op_at(m, at) != OP_FUNCTION_END) {
+                at = next(m, at);
+            }
+        } else if (op >= OP_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP) {
+            emit_constant(m, at);
+        } else if (!((op == OP_NAME || op == OP_DECORATE) && m->ids[w[1]].gone) &&
+                   !(op == OP_DECORATE && w[2] == DECORATION_SPEC_ID)) {
+            emit_same(m, at);
+        }
+    }
+}
+
+size_t tyn_spirv_specialize(const uint32_t *words, size_t count, const uint32_t *spec,
+                            uint32_t num_spec, uint32_t *out)
+{
+    module m = {.words = words, .count = count, .out = out};
+    if (count <= HEADER || !is_whole(&m)) {
+        return 0;
+    }
+    m.bound = words[BOUND];
+    m.ids = calloc(m.bound, sizeof *m.ids);
+    m.functions = calloc(m.bound, sizeof *m.functions);
+    if (m.ids && m.functions) {
+        read_globals(&m, spec, num_spec);
+        read_functions(&m);
+        mark_gone(&m);
+        emit_all(&m);
+    }
+    free(m.ids);
+    free(m.functions);
+    return m.written;
+}
