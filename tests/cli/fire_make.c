@@ -1,5 +1,5 @@
 // fire_make.c -- `fire_make FIRE.vdb HOT.vdb`: a fire of OpenVDB grids, and one without its density.
-#include "vdb_write.h"
+#include "vdb_writer.h"
 #include <math.h>
 
 static float smoke(int32_t i, int32_t j, int32_t k, int c)
@@ -31,10 +31,42 @@ static float tint(int32_t i, int32_t j, int32_t k, int c)
 int main(int argc, char **argv)
 {
     const vdb_spec specs[] = {
-        {"temperature", false, {0, 0, 0}, {11, 15, 11}, 0.1, 0, {-0.55, 0.05, -0.55}, heat},
-        {"vel", true, {0, 0, 0}, {11, 19, 11}, 0.1, 0, {-0.55, 0.05, -0.55}, wind},
-        {"density", false, {0, 3, 0}, {11, 19, 11}, 0.1, 0, {-0.55, 0.05, -0.55}, smoke},
-        {"Cd", true, {0, 3, 0}, {11, 19, 11}, 0.1, 0, {-0.55, 0.05, -0.55}, tint},
+        {"temperature",
+         VDB_FLOATS,
+         {0, 0, 0},
+         {11, 15, 11},
+         {0.1, 0.1, 0.1},
+         0,
+         {-0.55, 0.05, -0.55},
+         heat},
+        {"vel",
+         VDB_VECTORS,
+         {0, 0, 0},
+         {11, 19, 11},
+         {0.1, 0.1, 0.1},
+         0,
+         {-0.55, 0.05, -0.55},
+         wind},
+        {"density",
+         VDB_FLOATS,
+         {0, 3, 0},
+         {11, 19, 11},
+         {0.1, 0.1, 0.1},
+         0,
+         {-0.55, 0.05, -0.55},
+         smoke},
+        {"Cd",
+         VDB_VECTORS,
+         {0, 3, 0},
+         {11, 19, 11},
+         {0.1, 0.1, 0.1},
+         0,
+         {-0.55, 0.05, -0.55},
+         tint},
     };
-    return argc == 3 && vdb_write(argv[1], specs, 4) && vdb_write(argv[2], specs, 2) ? 0 : 1;
+    const uint32_t packed = VDB_BLOSC | VDB_ACTIVE_MASK;
+    return argc == 3 && !vdb_write(argv[1], specs, 4, packed) &&
+                   !vdb_write(argv[2], specs, 2, packed)
+               ? 0
+               : 1;
 }
