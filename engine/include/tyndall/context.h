@@ -40,7 +40,7 @@ typedef enum tyn_quality {
 
 typedef struct tyn_context_params {
     size_t struct_size TYN_PARAMS_SIZE(tyn_context_params);
-    const char *method;           // "pop" (NULL), "pop-paper", "single", "path"
+    const char *method;           // one of tyndall/registry.h; NULL: "pop"
     const tyn_settings *settings; // NULL = defaults; copied; before the preset's
     uint32_t frames_in_flight;    // 1..8; 0 = 2
     bool readback;                // copy outputs to host memory (tyn_context_output)
