@@ -52,7 +52,7 @@ def check(root):
         for named in re.findall(rf"[`\s(]({FILES}\.(?:c|h|cpp|comp|glsl|py|sh|json))\b", text):
             if not os.path.exists(os.path.join(root, named)):
                 faults.append(f"{page}: there is no {named}")
-        for named in re.findall(r"\btools/docs/[\w-]+", text):
+        for named in re.findall(r"\btools/docs/[\w-]+(?:\.\w+)?", text):
             if not os.path.exists(os.path.join(root, named)) and not os.path.exists(os.path.join(root, named + ".c")):
                 faults.append(f"{page}: there is no {named}")
     for path in paths:
