@@ -93,6 +93,26 @@ def check_unknown():
     check("no such page", no_page.returncode != 0 and no_page.stderr.count("\n") == 1, no_page.stderr)
 
 
+def check_resume():
+    """A run goes on where it was: what was made is skipped, and a command that fails stops no other."""
+    def entry(page, command):
+        return {"page": page, "methods": [], "scenes": [], "minutes": 1.5, "command": command}
+
+    write("tools/docs/ages.json", "{}")
+    write("tools/docs/manifest.json", json.dumps([entry("a.md", "test -e go && echo a >>ran"), entry("b.md", "echo b >>ran"),
+                                                  entry("c.md", "echo b >>ran")]))
+    def run():
+        result = subprocess.run(["tools/docs/all"], capture_output=True, text=True, check=False)
+        return result.returncode, read("ran"), result.stdout
+
+    first = run()
+    check("what can be made is, a command for two tables once", first[:2] == (1, "b\n"), str(first))
+    check("with the minutes of each page", "a.md: 1 to make, about 1.5 minutes\n" in first[2], first[2])
+    write("go", "")
+    check("then what is left", run()[:2] == (0, "b\na\n"))
+    check("and then nothing", run()[:2] == (0, "b\na\n"))
+
+
 def check_manifest():
     """Each table stands in its page, with its version; each mark of a page is in the manifest."""
     manifest, tables = json.loads(read("tools/docs/manifest.json")), set()
@@ -125,4 +145,5 @@ with tempfile.TemporaryDirectory() as copy:
     make_fresh()
     check_hashes()
     check_unknown()
+    check_resume()
 sys.exit(1 if failures else 0)
