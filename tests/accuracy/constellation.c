@@ -2,7 +2,7 @@
 // distant lights in the place of a map are off by.
 #include "bound.h"
 #include "gpu_test.h"
-#include "picture.h"
+#include "path_run.h"
 #include "random_unit.h"
 #include "sky.h"
 #include <math.h>
@@ -64,7 +64,7 @@ static picture reference_of(gpu_test *t, const tyn_scene *scene, uint32_t sample
     tyn_view view;
     set_view(&view);
     picture p;
-    picture_render(&p, t->dev, "path", scene, &view, NULL, samples);
+    path_reference(&p, t->dev, scene, &view, samples);
     return p;
 }
 

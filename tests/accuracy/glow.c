@@ -242,13 +242,27 @@ static void without_scattering(void **state)
 
 // ---- with scattering ----------------------------------------------------------------------------
 
-static picture picture_of(gpu_test *t, const char *method, const tyn_scene *scene, uint32_t samples,
-                          uint32_t depth)
+static tyn_view aslant(void)
 {
-    tyn_view view = {.max_depth = depth};
-    picture p;
+    tyn_view view = {0};
     view_orthographic(&view, (float[]){0, 0, 0}, 0.3f, -0.2f, -1, (float[]){0, 1, 0}, 0.75f, 32);
+    return view;
+}
+
+static picture picture_of(gpu_test *t, const char *method, const tyn_scene *scene, uint32_t samples)
+{
+    const tyn_view view = aslant();
+    picture p;
     picture_render(&p, t->dev, method, scene, &view, NULL, samples);
+    return p;
+}
+
+static picture reference_of(gpu_test *t, const tyn_scene *scene, uint32_t depth)
+{
+    tyn_view view = aslant();
+    view.max_depth = depth;
+    picture p;
+    path_reference(&p, t->dev, scene, &view, 512);
     return p;
 }
 
@@ -272,8 +286,7 @@ static void with_scattering(void **state)
         if (cases[i].sun) {
             scene_add_sun(scene, 0.5f, -1, -0.6f, 3, 2.5f, 2);
         }
-        picture path = picture_of(t, "path", scene, 512, 0),
-                pop = picture_of(t, "pop", scene, 1, 0);
+        picture path = reference_of(t, scene, 0), pop = picture_of(t, "pop", scene, 1);
         const picture_error e = picture_compare(&pop, &path, 4);
         printf("%s: rel_l1 %.4f, noise %.4f, bias %+.4f\n", cases[i].name, e.rel_l1, e.noise,
                e.bias);
@@ -291,7 +304,7 @@ static void albedo(void **state)
     tyn_scene *scene = make(6, 2, NO_GLOW, true), *plain = make(1, 7, NO_GLOW, false);
     scene_add_sun(scene, 0.5f, -1, -0.6f, 3, 2.5f, 2);
     scene_add_sun(plain, 0.5f, -1, -0.6f, 3, 2.5f, 2);
-    picture path = picture_of(t, "path", scene, 512, 1), one = picture_of(t, "single", scene, 1, 0);
+    picture path = reference_of(t, scene, 1), one = picture_of(t, "single", scene, 1);
     const picture_error e = picture_compare(&one, &path, 4);
     assert_true(within(e.rel_l1, 0.03, NULL, "single against the first order of path"));
     picture_free(&path);
@@ -309,8 +322,8 @@ static void albedo(void **state)
     }
     static const char *const methods[] = {"path", "pop", "single"};
     for (int m = 0; m < 3; m++) {
-        picture a = picture_of(t, methods[m], scene, 512, 0),
-                b = picture_of(t, methods[m], plain, 512, 0);
+        picture a = picture_of(t, methods[m], scene, 512),
+                b = picture_of(t, methods[m], plain, 512);
         const picture_error d = picture_compare(&a, &b, 4);
         printf("%s, even albedo: rel_l1 %.5f, noise %.5f\n", methods[m], d.rel_l1, d.noise);
         if (m == 0) {

@@ -289,5 +289,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lamps), cmocka_unit_test(shaft),
                                        cmocka_unit_test(epsilons), cmocka_unit_test(against_path)};
-    return cmocka_run_group_tests(tests, path_run_setup, teardown);
+    return cmocka_run_group_tests(tests, path_run_setup_kept, teardown);
 }

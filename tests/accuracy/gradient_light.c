@@ -252,5 +252,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(extremes), cmocka_unit_test(niches),
                                        cmocka_unit_test(shaft), cmocka_unit_test(multiple),
                                        cmocka_unit_test(fine)};
-    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
+    return cmocka_run_group_tests(tests, path_run_setup_kept, path_run_teardown);
 }

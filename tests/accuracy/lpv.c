@@ -89,7 +89,7 @@ static void cubes(void **state)
         picture reference, ours;
         make_cube(&scene, depths[d]);
         cube_view(&view);
-        picture_render(&reference, t->dev, "path", &scene, &view, NULL, path_effort(1024));
+        path_reference(&reference, t->dev, &scene, &view, path_effort(1024));
         for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
             picture_render(&ours, t->dev, "lpv", &scene, &view, runs[k].settings, 0);
             const picture_error e = picture_compare(&ours, &reference, 8);

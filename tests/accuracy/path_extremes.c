@@ -29,6 +29,7 @@ static void check(gpu_test *t, const char *name, const tyn_medium *medium, const
     view.no_background = true;
     path_run run;
     path_run_open(&run, t->dev);
+    run.kept = false; // `path` is what is tested
     picture p = {0};
     path_run_picture(&run, &p, &scene, &view, samples);
     for (int c = 0; c < 3; c++) {

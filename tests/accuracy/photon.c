@@ -381,7 +381,7 @@ static void among_surfaces(void **state)
         tyn_view view = {
             .width = 48, .height = 48, .camera = scene.cameras[0], .outputs = TYN_OUTPUT_RADIANCE};
         picture path, found;
-        picture_render(&path, t->dev, "path", &scene, &view, NULL, path_effort(cases[i].spp));
+        path_reference(&path, t->dev, &scene, &view, path_effort(cases[i].spp));
         picture_render(&found, t->dev, "photon", &scene, &view,
                        "photon_trace.generations=10 photon_trace.photons=16384", 1);
         const picture_error e = picture_compare(&found, &path, 8);

@@ -7,7 +7,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "numbers.h"
-#include "picture.h"
+#include "path_run.h"
 #include "sample_scene.h"
 #include "skip.h"
 #include "todo.h"
@@ -55,10 +55,8 @@ static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
 static double against_path(gpu_test *t, const char *name, const tyn_scene *scene,
                            const tyn_view *view, uint32_t spp, const char *flat)
 {
-    const char *effort = getenv("TYN_LONG");
     picture reference;
-    picture_render(&reference, t->dev, "path", scene, view, NULL,
-                   effort ? spp * (uint32_t)atoi(effort) : spp);
+    path_reference(&reference, t->dev, scene, view, path_effort(spp));
     double e = worst_error(t, name, scene, view, &reference, flat);
     picture_free(&reference);
     errors[num_errors++] = e;

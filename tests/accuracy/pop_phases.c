@@ -214,5 +214,5 @@ int main(void)
                                        cmocka_unit_test(first_scattering)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return run_cases(tests, path_run_setup, path_run_teardown);
+    return run_cases(tests, path_run_setup_kept, path_run_teardown);
 }

@@ -287,7 +287,7 @@ static void rooms(void **state)
         picture pop, path;
         tyn_device *dev = ((gpu_test *)*state)->dev;
         picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
-        picture_render(&path, dev, "path", &scene, &view, NULL, 64);
+        path_reference(&path, dev, &scene, &view, 64);
         picture_error e = picture_compare(&pop, &path, 8);
         print_message("room with %s: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
                       emitter ? "an emitter" : "a lamp", 100 * e.rel_l1, 100 * e.noise,
@@ -400,7 +400,7 @@ static void reflections_of_large_floors(void **state)
         picture pop, path;
         tyn_device *dev = ((gpu_test *)*state)->dev;
         picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
-        picture_render(&path, dev, "path", &scene, &view, NULL, 256);
+        path_reference(&path, dev, &scene, &view, 256);
         picture_error e = picture_compare(&pop, &path, 8);
         print_message("panel over a floor of %g m: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
                       2 * (double)half, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
@@ -444,7 +444,7 @@ static void lamps_in_a_corner(void **state)
         picture pop, direct, path;
         picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
         picture_render(&direct, dev, "pop", &scene, &view, "vpl.count=0", 1);
-        picture_render(&path, dev, "path", &scene, &view, NULL, 64);
+        path_reference(&path, dev, &scene, &view, 64);
         for (uint32_t i = 0; i < 3 * 64 * 64; i++) {
             pop.rgb[i] -= direct.rgb[i];
             path.rgb[i] -= direct.rgb[i];

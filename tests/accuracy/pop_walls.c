@@ -75,7 +75,6 @@ static void sealed(void **state)
         printf("albedo %g, sigma_s %g: %d points inside, most %.1e; mean outside %.4f\n",
                (double)rho, (double)m.sigma_s[0], in, inside, outside / dark);
         assert_true(in > 100 && inside < 1e-4 * outside / dark);
-        tyn_offline_destroy(&off);
 
         // From inside nothing is to be seen; from outside, among uniform surroundings, a white box neither.
         tyn_view view = {0};
@@ -85,12 +84,13 @@ static void sealed(void **state)
             {0.2f, 0.1f, 0.25f}, {-0.3f, -0.3f, 0}, {0.02f, 0.3f, -0.02f}};
         for (int eye = 0; eye < 3; eye++) {
             view_perspective(&view, eyes[eye], (float[]){-0.2f, -0.05f, -0.2f}, 1, 40);
-            picture_render(&p_inside, t->dev, "pop", &scene, &view, NULL, 0);
+            picture_frame(&p_inside, t->dev, off, &scene, &view, false);
             for (int i = 0; i < 40 * 40 * 3; i++) {
                 brightest = maximum(brightest, p_inside.rgb[i]);
             }
             picture_free(&p_inside);
         }
+        tyn_offline_destroy(&off);
         view_perspective(&view, (float[]){0.2f, 0.8f, 2.5f}, (float[]){0, 0, 0}, 0.5f, 24);
         picture_render(&white, t->dev, "pop", &scene, &view, "lattice.sweeps=12", 0);
         for (int i = 0; i < 24 * 24 * 3; i++) {
@@ -212,7 +212,6 @@ static void sealed_from_virtual_lights(void **state)
                 counts[in]++;
             }
         }
-        tyn_offline_destroy(&off);
         const double lit = sums[lamp_inside] / counts[lamp_inside], dark = most[!lamp_inside];
         printf("sealed, lamp %s, box of %g m: %d points in, %d out; lit %.3f, most in the dark "
                "%.1e\n",
@@ -232,7 +231,7 @@ static void sealed_from_virtual_lights(void **state)
                              lamp_inside ? (float[]){0, -0.1f, 0} : (float[]){0.1f, -0.2f, -0.9f},
                              1.2f, SIDE);
             picture dark_side;
-            picture_render(&dark_side, t->dev, "pop", &scene, &view, NULL, 0);
+            picture_frame(&dark_side, t->dev, off, &scene, &view, false);
             for (int i = 0; i < SIDE * SIDE; i++) {
                 const double light = dark_side.rgb[3 * i + 1];
                 brightest = maximum(brightest, light);
@@ -241,6 +240,7 @@ static void sealed_from_virtual_lights(void **state)
             }
             picture_free(&dark_side);
         }
+        tyn_offline_destroy(&off);
         printf("    %d pixels on the dark side: mean %.1e, brightest %.1e, %d shine\n",
                3 * SIDE * SIDE, mean, brightest, shining);
         assert_true(mean < 1e-4 * lit / (4 * M_PI));
@@ -377,6 +377,7 @@ static void sealed_boxes_at_random(void **state)
             }
             scene_add_lamp(&scene, lamp, 10);
             double lit = 0;
+            tyn_offline *off = scene_open(t->dev, "pop", set->settings);
             for (int eye = 0; eye <= VIEWS; eye++) { // the first one is on the lit side
                 const float turn = uniform(0, 6.28f), away = uniform(1.05f, 1.15f);
                 float from[3] = {away * cosf(turn), 0, away * sinf(turn)}, at[3] = {0, 0, 0};
@@ -389,7 +390,7 @@ static void sealed_boxes_at_random(void **state)
                 tyn_view view = {0};
                 view_perspective(&view, from, at, 1.2f, eye == 0 ? LIT_SIDE : SIDE);
                 picture p;
-                picture_render(&p, t->dev, "pop", &scene, &view, set->settings, 0);
+                picture_frame(&p, t->dev, off, &scene, &view, false);
                 const int count = (int)(p.width * p.height);
                 double most = 0, sum = 0;
                 int here = 0;
@@ -418,6 +419,7 @@ static void sealed_boxes_at_random(void **state)
                 mean += sum / lit;
                 brightest = maximum(brightest, most / lit);
             }
+            tyn_offline_destroy(&off);
             tyn_scene_finish(&scene);
         }
         printf("boxes at random, %s: %d pixels on the dark side, %d shine, mean %.1e and brightest "

@@ -69,7 +69,7 @@ static void cubes(void **state)
             scene_add_sun(&scene, 1, -0.5f, 0.2f, 1, 1, 1);
         }
         cube_view(&view);
-        picture_render(&reference, t->dev, "path", &scene, &view, NULL, path_effort(128));
+        path_reference(&reference, t->dev, &scene, &view, path_effort(128));
         printf("depth %g, g %g, %s:\n", (double)cases[i].depth, (double)cases[i].g,
                cases[i].sky ? "sky" : "sun");
         double errors[2] = {0, 0};

@@ -5,6 +5,9 @@
 . "$(dirname "$0")/lib.sh"
 
 needs_device
+# What other tests have had compiled need not be compiled again here.
+mkdir -p "$MESA_SHADER_CACHE_DIR"
+cp -r "$MESA_SHADER_CACHE_DIR" "$work/shaders"
 export MESA_SHADER_CACHE_DIR="$work/shaders"
 
 compiled() {

@@ -7,7 +7,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 export XDG_CACHE_HOME="$work/cache"
-export MESA_SHADER_CACHE_DIR="$helpers/driver-cache" # kernels that any test has had compiled
+export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$helpers/driver-cache}" # of all tests (tests/meson.build)
 failures=0
 
 fail() {

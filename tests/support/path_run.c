@@ -2,6 +2,7 @@
 #include "path_run.h"
 #include "numbers.h"
 #include "offline_frame.h"
+#include "references.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@ uint32_t path_effort(uint32_t samples)
 
 void path_run_open(path_run *r, tyn_device *dev)
 {
-    *r = (path_run){.dev = dev};
+    *r = (path_run){.dev = dev, .kept = true};
     assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "path"), &r->off),
                      TYN_OK);
 }
@@ -22,9 +23,11 @@ void path_run_open(path_run *r, tyn_device *dev)
 void path_run_close(path_run *r)
 {
     tyn_offline_destroy(&r->off);
+    free(r->probes);
+    r->probes = NULL;
 }
 
-int path_run_setup(void **state)
+static int set_up(void **state, bool kept)
 {
     void *gpu = NULL;
     int result = gpu_setup(&gpu);
@@ -32,9 +35,20 @@ int path_run_setup(void **state)
         path_run *r = malloc(sizeof *r);
         path_run_open(r, ((gpu_test *)gpu)->dev);
         r->gpu = gpu;
+        r->kept = kept;
         *state = r;
     }
     return result;
+}
+
+int path_run_setup(void **state)
+{
+    return set_up(state, false);
+}
+
+int path_run_setup_kept(void **state)
+{
+    return set_up(state, true);
 }
 
 int path_run_teardown(void **state)
@@ -46,10 +60,16 @@ int path_run_teardown(void **state)
     return gpu_teardown(&gpu);
 }
 
-static void run(path_run *r, const tyn_scene *scene, tyn_view *view, uint32_t samples)
+// What `v` asks for with so many samples, and its key; 0 of results that are not kept.
+static uint64_t next_key(path_run *r, const tyn_scene *scene, tyn_view *v, uint32_t samples)
 {
-    view->num_samples = samples;
-    view->seed = r->seed++;
+    v->num_samples = samples;
+    v->seed = r->seed++;
+    return r->kept ? reference_key(scene, v) : 0;
+}
+
+static void run(path_run *r, const tyn_scene *scene, const tyn_view *view)
+{
     offline_frame(r->off, scene, view);
     assert_int_equal(tyn_device_validation_messages(r->dev), 0);
 }
@@ -68,12 +88,30 @@ void path_run_picture(path_run *r, picture *p, const tyn_scene *scene, const tyn
 {
     tyn_view v = *view;
     v.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
-    run(r, scene, &v, samples);
+    const uint64_t key = next_key(r, scene, &v, samples);
     picture_free(p);
+    if (key && reference_read_picture(key, p)) {
+        return;
+    }
+    run(r, scene, &v);
     *p = (picture){.width = v.width, .height = v.height};
     size_t pixels = (size_t)p->width * p->height;
     p->rgb = copy_rgb(tyn_offline_output(r->off, TYN_OUTPUT_RADIANCE), pixels);
     p->se = copy_rgb(tyn_offline_output(r->off, TYN_OUTPUT_ERROR), pixels);
+    if (key) {
+        reference_write_picture(key, p);
+    }
+}
+
+void path_reference(picture *p, tyn_device *dev, const tyn_scene *scene, const tyn_view *view,
+                    uint32_t samples)
+{
+    path_run r;
+    path_run_open(&r, dev);
+    r.seed = view->seed;
+    *p = (picture){0};
+    path_run_picture(&r, p, scene, view, samples);
+    path_run_close(&r);
 }
 
 const float *path_run_layer(path_run *r, const tyn_scene *scene, const tyn_view *view,
@@ -81,39 +119,70 @@ const float *path_run_layer(path_run *r, const tyn_scene *scene, const tyn_view 
 {
     tyn_view v = *view;
     v.outputs = TYN_OUTPUT_RADIANCE | output;
-    run(r, scene, &v, samples);
+    assert_false(r->kept);
+    next_key(r, scene, &v, samples);
+    run(r, scene, &v);
     return tyn_offline_output(r->off, output);
+}
+
+// A view of no picture, in front of the scene.
+static tyn_view view_of_numbers(const tyn_scene *scene, uint32_t outputs)
+{
+    tyn_view v = {.width = 1, .height = 1, .outputs = outputs};
+    tyn_camera_frame_scene(&v.camera, scene);
+    return v;
 }
 
 const tyn_probe_result *path_run_probe(path_run *r, const tyn_scene *scene,
                                        const float (*points)[3], uint32_t num_points,
                                        bool scattered, uint32_t samples)
 {
-    tyn_view v = {.width = 1,
-                  .height = 1,
-                  .outputs = TYN_OUTPUT_PROBE,
-                  .points = points,
-                  .num_points = num_points,
-                  .scattered_only = scattered};
-    tyn_camera_frame_scene(&v.camera, scene);
-    run(r, scene, &v, samples);
-    return tyn_offline_output(r->off, TYN_OUTPUT_PROBE);
+    tyn_view v = view_of_numbers(scene, TYN_OUTPUT_PROBE);
+    v.points = points;
+    v.num_points = num_points;
+    v.scattered_only = scattered;
+    const uint64_t key = next_key(r, scene, &v, samples);
+    const size_t count = num_points * sizeof *r->probes / sizeof(float);
+    free(r->probes);
+    r->probes = malloc(num_points * sizeof *r->probes);
+    if (!key || !reference_read_floats(key, (float *)r->probes, count)) {
+        run(r, scene, &v);
+        memcpy(r->probes, tyn_offline_output(r->off, TYN_OUTPUT_PROBE), count * sizeof(float));
+        if (key) {
+            reference_write_floats(key, (const float *)r->probes, count);
+        }
+    }
+    return r->probes;
 }
 
 const tyn_balance *path_run_balance(path_run *r, const tyn_scene *scene, uint32_t samples)
 {
-    tyn_view v = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
-    tyn_camera_frame_scene(&v.camera, scene);
-    run(r, scene, &v, samples);
-    return tyn_offline_output(r->off, TYN_OUTPUT_BALANCE);
+    tyn_view v = view_of_numbers(scene, TYN_OUTPUT_BALANCE);
+    const uint64_t key = next_key(r, scene, &v, samples);
+    const size_t count = sizeof r->balance / sizeof(double);
+    if (!key || !reference_read_doubles(key, (double *)&r->balance, count)) {
+        run(r, scene, &v);
+        r->balance = *(const tyn_balance *)tyn_offline_output(r->off, TYN_OUTPUT_BALANCE);
+        if (key) {
+            reference_write_doubles(key, (const double *)&r->balance, count);
+        }
+    }
+    return &r->balance;
 }
 
 const tyn_fluxes *path_run_fluxes(path_run *r, const tyn_scene *scene, uint32_t samples)
 {
-    tyn_view v = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_FLUXES};
-    tyn_camera_frame_scene(&v.camera, scene);
-    run(r, scene, &v, samples);
-    return tyn_offline_output(r->off, TYN_OUTPUT_FLUXES);
+    tyn_view v = view_of_numbers(scene, TYN_OUTPUT_FLUXES);
+    const uint64_t key = next_key(r, scene, &v, samples);
+    const size_t count = sizeof r->fluxes / sizeof(float);
+    if (!key || !reference_read_floats(key, (float *)&r->fluxes, count)) {
+        run(r, scene, &v);
+        r->fluxes = *(const tyn_fluxes *)tyn_offline_output(r->off, TYN_OUTPUT_FLUXES);
+        if (key) {
+            reference_write_floats(key, (const float *)&r->fluxes, count);
+        }
+    }
+    return &r->fluxes;
 }
 
 void view_perspective(tyn_view *view, const float from[3], const float at[3], float tangent,

@@ -8,15 +8,26 @@ typedef struct path_run {
     tyn_offline *off;
     tyn_device *dev;
     uint32_t seed;
-    gpu_test *gpu; // of path_run_setup; NULL otherwise
+    bool kept;     // results come from tests/references where they are there (references.h)
+    gpu_test *gpu; // of the setups below; NULL otherwise
+    // The last result that was read.
+    tyn_probe_result *probes;
+    tyn_balance balance;
+    tyn_fluxes fluxes;
 } path_run;
 
+// References for other methods: kept.
 void path_run_open(path_run *r, tyn_device *dev);
 void path_run_close(path_run *r);
-// cmocka group setup and teardown for tests of `path` alone: *state is a path_run on the device of gpu_setup.
+// cmocka group setup and teardown: *state is a path_run on the device of gpu_setup. The first is for tests of `path`
+// itself, which always runs; the second for tests of other methods.
 int path_run_setup(void **state);
+int path_run_setup_kept(void **state);
 int path_run_teardown(void **state);
 
+// A kept reference by `path` with view->seed.
+void path_reference(picture *p, tyn_device *dev, const tyn_scene *scene, const tyn_view *view,
+                    uint32_t samples);
 // Pictures of view->width x height; `samples` of each pixel. What was in `p` is freed.
 void path_run_picture(path_run *r, picture *p, const tyn_scene *scene, const tyn_view *view,
                       uint32_t samples);

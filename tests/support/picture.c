@@ -123,14 +123,11 @@ static float *copy_rgb(const float *rgba, size_t pixels)
     return rgb;
 }
 
-void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_scene *scene,
-                    const tyn_view *view, const char *settings, uint32_t spp)
+void picture_frame(picture *p, tyn_device *dev, tyn_offline *off, const tyn_scene *scene,
+                   const tyn_view *view, bool sampled)
 {
-    tyn_offline *off = scene_open(dev, method, settings);
     tyn_view v = *view;
-    bool sampled = !strcmp(method, "path");
     v.outputs = TYN_OUTPUT_RADIANCE | (sampled ? TYN_OUTPUT_ERROR : 0);
-    v.num_samples = spp;
     offline_frame(off, scene, &v);
     *p = (picture){.width = v.width, .height = v.height};
     size_t pixels = (size_t)p->width * p->height;
@@ -138,8 +135,17 @@ void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_s
     if (sampled) {
         p->se = copy_rgb(tyn_offline_output(off, TYN_OUTPUT_ERROR), pixels);
     }
-    tyn_offline_destroy(&off);
     assert_int_equal(tyn_device_validation_messages(dev), 0);
+}
+
+void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_scene *scene,
+                    const tyn_view *view, const char *settings, uint32_t spp)
+{
+    tyn_offline *off = scene_open(dev, method, settings);
+    tyn_view v = *view;
+    v.num_samples = spp;
+    picture_frame(p, dev, off, scene, &v, !strcmp(method, "path"));
+    tyn_offline_destroy(&off);
 }
 
 bool picture_reference(picture *p, const char *name)

@@ -32,6 +32,11 @@ void view_orthographic(tyn_view *view, const float centre[3], float x, float y, 
 void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_scene *scene,
                     const tyn_view *view, const char *settings, uint32_t spp);
 
+// The same of a method that is open (scene_open), for several views of a scene: what does not depend on the camera is not
+// computed again. `sampled`: with standard errors.
+void picture_frame(picture *p, tyn_device *dev, tyn_offline *off, const tyn_scene *scene,
+                   const tyn_view *view, bool sampled);
+
 // images/NAME.npy of the shared references. False if it is absent.
 bool picture_reference(picture *p, const char *name);
 
