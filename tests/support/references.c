@@ -1,6 +1,7 @@
 // references.c -- see references.h.
 #include "references.h"
 #include "base/hash.h"
+#include "numbers.h"
 #include "registry/registry.h"
 #include <math.h>
 #include <setjmp.h>
@@ -236,9 +237,9 @@ bool reference_read_picture(uint64_t key, picture *p)
 // A power of two that brings the largest value near the largest half float, so that small standard errors keep their bits.
 static double unit_of(const picture *p)
 {
-    float most = 0;
+    double most = 0;
     for (size_t i = 0; i < 3 * (size_t)p->width * p->height; i++) {
-        most = fmaxf(most, fmaxf(fabsf(p->rgb[i]), p->se[i]));
+        most = maximum(most, maximum(fabs((double)p->rgb[i]), p->se[i]));
     }
     int exponent = 0;
     frexp(most, &exponent);
