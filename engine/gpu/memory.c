@@ -1,4 +1,4 @@
-// memory.c -- device memory in few large blocks, given out linearly, freed all at once.
+// memory.c -- see memory.h.
 #include "gpu/memory.h"
 #include <stdlib.h>
 
@@ -75,129 +75,117 @@ static VkResult check_given(const tyn_device *dev, const tyn_memory_request *req
     return VK_ERROR_UNKNOWN;
 }
 
-static tyn_result add_block(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDeviceSize size,
-                            VkDeviceSize align, bool map, tyn_block **out)
+// Memory for a block that has none yet.
+static tyn_result fill_block(tyn_device *dev, tyn_block *block)
+{
+    const tyn_memory_request request = {{block->size, block->align, 1u << block->type},
+                                        block->host};
+    VkResult made;
+    if (dev->allocator.allocate) {
+        made = dev->allocator.allocate(dev->allocator.user, &request, &block->allocation);
+        made = made == VK_SUCCESS ? check_given(dev, &request, &block->allocation) : made;
+    } else {
+        made = allocate_from_device(dev, &request, block->type, &block->allocation);
+    }
+    if (made != VK_SUCCESS) {
+        block->allocation = (tyn_allocation){0};
+    }
+    if (made == VK_ERROR_OUT_OF_DEVICE_MEMORY || made == VK_ERROR_OUT_OF_HOST_MEMORY) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "out of device memory: %.1f MiB more were needed",
+                      (double)block->size / (1 << 20));
+        return TYN_ERR_MEMORY;
+    }
+    return tyn_vk_check(dev, made, "allocating device memory");
+}
+
+tyn_result tyn_heap_allocate(tyn_device *dev, tyn_heap *heap)
+{
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < heap->num_blocks; i++) {
+        if (!heap->blocks[i].allocation.memory) {
+            result = fill_block(dev, &heap->blocks[i]);
+        }
+    }
+    return result;
+}
+
+tyn_result tyn_heap_add(tyn_heap *heap, const tyn_block *block)
 {
     tyn_block *grown = realloc(heap->blocks, (heap->num_blocks + 1) * sizeof *heap->blocks);
     if (!grown) {
         return TYN_ERR_MEMORY;
     }
     heap->blocks = grown;
-    tyn_block block = {.type = type, .size = size};
-    const tyn_memory_request request = {{size, align, 1u << type}, map};
-    VkResult made;
-    if (dev->allocator.allocate) {
-        made = dev->allocator.allocate(dev->allocator.user, &request, &block.allocation);
-        made = made == VK_SUCCESS ? check_given(dev, &request, &block.allocation) : made;
-    } else {
-        made = allocate_from_device(dev, &request, type, &block.allocation);
-    }
-    if (made == VK_ERROR_OUT_OF_DEVICE_MEMORY || made == VK_ERROR_OUT_OF_HOST_MEMORY) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "out of device memory: %.1f MiB more were needed",
-                      (double)size / (1 << 20));
-        return TYN_ERR_MEMORY;
-    }
-    if (made != VK_SUCCESS) {
-        return tyn_vk_check(dev, made, "allocating device memory");
-    }
-    heap->total += size;
-    heap->blocks[heap->num_blocks] = block;
-    *out = &heap->blocks[heap->num_blocks++];
+    heap->blocks[heap->num_blocks++] = *block;
+    heap->total += block->size;
     return TYN_OK;
 }
 
-static tyn_result allocate(tyn_device *dev, tyn_heap *heap, const VkMemoryRequirements *need,
-                           tyn_memory_kind kind, VkDeviceSize expected, tyn_block **out,
-                           VkDeviceSize *offset)
+static VkDeviceSize align_up(VkDeviceSize x, VkDeviceSize align)
 {
-    int type = tyn_memory_type(dev, need->memoryTypeBits, kind);
+    return (x + align - 1) / align * align;
+}
+
+tyn_result tyn_heap_place(const tyn_device *dev, tyn_heap *heap, const VkMemoryRequirements *need,
+                          tyn_memory_kind kind, VkDeviceSize expected, tyn_place *out)
+{
+    const int type = tyn_memory_type(dev, need->memoryTypeBits, kind);
     if (type < 0) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "the device has no memory type of kind %d", kind);
         return TYN_ERR_DEVICE;
     }
     // Buffers and images may share a block: keep them a granularity page apart.
-    VkDeviceSize align = need->alignment > dev->properties.limits.bufferImageGranularity
-                             ? need->alignment
-                             : dev->properties.limits.bufferImageGranularity;
+    const VkDeviceSize page = dev->properties.limits.bufferImageGranularity;
+    const VkDeviceSize align = need->alignment > page ? need->alignment : page;
+    const bool host = kind != TYN_MEMORY_DEVICE;
     for (uint32_t i = 0; i < heap->num_blocks; i++) {
         tyn_block *b = &heap->blocks[i];
-        const VkDeviceSize base = b->allocation.offset;
-        const VkDeviceSize at = (base + b->used + align - 1) / align * align - base;
-        bool host = kind != TYN_MEMORY_DEVICE;
-        if (b->type == (uint32_t)type && host == (b->allocation.mapped != NULL) &&
-            at + need->size <= b->size) {
+        const VkDeviceSize at = align_up(b->used, align);
+        if (b->type == (uint32_t)type && b->host == host && at + need->size <= b->size) {
             b->used = at + need->size;
-            *out = b;
-            *offset = at;
+            b->align = align > b->align ? align : b->align;
+            *out = (tyn_place){i, at};
             return TYN_OK;
         }
     }
-    VkDeviceSize size = expected < MIN_BLOCK   ? MIN_BLOCK
-                        : expected > MAX_BLOCK ? MAX_BLOCK
-                                               : expected;
-    size = size < need->size ? need->size : size;
-    const tyn_result result =
-        add_block(dev, heap, (uint32_t)type, size, align, kind != TYN_MEMORY_DEVICE, out);
-    if (result == TYN_OK) {
-        (*out)->used = need->size;
-        *offset = 0;
-    }
-    return result;
+    const VkDeviceSize likely = expected < MIN_BLOCK   ? MIN_BLOCK
+                                : expected > MAX_BLOCK ? MAX_BLOCK
+                                                       : expected;
+    *out = (tyn_place){heap->num_blocks, 0};
+    return tyn_heap_add(heap, &(tyn_block){.type = (uint32_t)type,
+                                           .host = host,
+                                           .align = align,
+                                           .size = likely < need->size ? need->size : likely,
+                                           .used = need->size});
 }
 
-tyn_result tyn_heap_add(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDeviceSize size,
-                        VkDeviceSize align, tyn_allocation *out)
+tyn_result tyn_heap_bind_buffer(tyn_device *dev, const tyn_heap *heap, VkBuffer buffer,
+                                tyn_place place, void **mapped)
 {
-    tyn_block *block = NULL;
-    const tyn_result result = add_block(dev, heap, type, size, align, false, &block);
-    if (result == TYN_OK) {
-        block->used = size;
-        *out = block->allocation;
-    }
-    return result;
-}
-
-tyn_result tyn_heap_bind_buffer(tyn_device *dev, tyn_heap *heap, VkBuffer buffer,
-                                tyn_memory_kind kind, VkDeviceSize expected, void **mapped)
-{
-    VkMemoryRequirements need;
-    dev->vk.GetBufferMemoryRequirements(dev->device, buffer, &need);
-    tyn_block *block = NULL;
-    VkDeviceSize offset;
-    tyn_result result = allocate(dev, heap, &need, kind, expected, &block, &offset);
-    if (result != TYN_OK) {
-        return result;
-    }
+    const tyn_allocation *a = &heap->blocks[place.block].allocation;
     if (mapped) {
-        *mapped = block->allocation.mapped ? (char *)block->allocation.mapped + offset : NULL;
+        *mapped = a->mapped ? (char *)a->mapped + place.offset : NULL;
     }
-    const tyn_allocation *a = &block->allocation;
     return tyn_vk_check(
-        dev, dev->vk.BindBufferMemory(dev->device, buffer, a->memory, a->offset + offset),
+        dev, dev->vk.BindBufferMemory(dev->device, buffer, a->memory, a->offset + place.offset),
         "vkBindBufferMemory");
 }
 
-tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image,
-                               VkDeviceSize expected)
+tyn_result tyn_heap_bind_image(tyn_device *dev, const tyn_heap *heap, VkImage image,
+                               tyn_place place)
 {
-    VkMemoryRequirements need;
-    dev->vk.GetImageMemoryRequirements(dev->device, image, &need);
-    tyn_block *block = NULL;
-    VkDeviceSize offset;
-    tyn_result result = allocate(dev, heap, &need, TYN_MEMORY_DEVICE, expected, &block, &offset);
-    if (result != TYN_OK) {
-        return result;
-    }
-    const tyn_allocation *a = &block->allocation;
-    return tyn_vk_check(dev,
-                        dev->vk.BindImageMemory(dev->device, image, a->memory, a->offset + offset),
-                        "vkBindImageMemory");
+    const tyn_allocation *a = &heap->blocks[place.block].allocation;
+    return tyn_vk_check(
+        dev, dev->vk.BindImageMemory(dev->device, image, a->memory, a->offset + place.offset),
+        "vkBindImageMemory");
 }
 
 void tyn_heap_finish(tyn_device *dev, tyn_heap *heap)
 {
     for (uint32_t i = 0; i < heap->num_blocks; i++) {
-        release(dev, &heap->blocks[i].allocation);
+        if (heap->blocks[i].allocation.memory) {
+            release(dev, &heap->blocks[i].allocation);
+        }
     }
     free(heap->blocks);
     *heap = (tyn_heap){0};

@@ -1,4 +1,4 @@
-// allocate.c -- Vulkan objects of resources, and memory for them.
+// allocate.c -- Vulkan objects of resources: made and placed without memory first, bound once there is memory.
 #include "graph/internal.h"
 #include <string.h>
 
@@ -81,16 +81,6 @@ static tyn_result make_views(tyn_graph *g, const resource *r, phys *p)
     return result;
 }
 
-static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, phys *p,
-                               VkDeviceSize expected)
-{
-    tyn_result result = make_image(g, r, p);
-    if (result == TYN_OK) {
-        result = tyn_heap_bind_image(g->dev, heap, p->image, expected);
-    }
-    return result == TYN_OK ? make_views(g, r, p) : result;
-}
-
 static tyn_result make_buffer(tyn_graph *g, VkDeviceSize size, VkBufferUsageFlags usage,
                               const char *name, VkBuffer *out)
 {
@@ -105,16 +95,37 @@ static tyn_result make_buffer(tyn_graph *g, VkDeviceSize size, VkBufferUsageFlag
     return tyn_vk_check(g->dev, made, name);
 }
 
-static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
-                                VkBufferUsageFlags usage, tyn_memory_kind kind,
-                                VkDeviceSize expected, const char *name, VkBuffer *out,
-                                void **mapped)
+VkMemoryRequirements graph_requirements(const tyn_graph *g, const phys *p)
 {
-    tyn_result result = make_buffer(g, size, usage, name, out);
-    if (result == TYN_OK) {
-        result = tyn_heap_bind_buffer(g->dev, heap, *out, kind, expected, mapped);
+    const tyn_device *dev = g->dev;
+    VkMemoryRequirements need;
+    if (p->image) {
+        dev->vk.GetImageMemoryRequirements(dev->device, p->image, &need);
+    } else {
+        dev->vk.GetBufferMemoryRequirements(dev->device, p->buffer, &need);
     }
-    return result;
+    return need;
+}
+
+// A buffer in memory that the host sees.
+static tyn_result draft_host_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
+                                    VkBufferUsageFlags usage, tyn_memory_kind kind,
+                                    const char *name, host_buffer *out)
+{
+    const tyn_result result = make_buffer(g, size, usage, name, &out->buffer);
+    if (result != TYN_OK) {
+        return result;
+    }
+    VkMemoryRequirements need;
+    g->dev->vk.GetBufferMemoryRequirements(g->dev->device, out->buffer, &need);
+    return tyn_heap_place(g->dev, heap, &need, kind, size, &out->place);
+}
+
+static tyn_result bind_host_buffer(tyn_graph *g, const tyn_heap *heap, host_buffer *b)
+{
+    return b->buffer && !b->mapped
+               ? tyn_heap_bind_buffer(g->dev, heap, b->buffer, b->place, &b->mapped)
+               : TYN_OK;
 }
 
 static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
@@ -123,7 +134,7 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
     const uint32_t limit = dev->properties.limits.maxTexelBufferElements;
     tyn_result result = TYN_OK;
     for (int i = 0; result == TYN_OK && i < NUM_TEXEL_FORMATS; i++) {
-        if (!(p->texel_uses >> i & 1) || p->texels[i]) { // histories have them already
+        if (!(p->texel_uses >> i & 1)) {
             continue;
         }
         const uint32_t size = graph_texel_size(graph_texel_formats[i]);
@@ -156,81 +167,72 @@ static bool may_share(const tyn_graph *g, const resource *r)
            graph_resource_bytes(r) >= SHARED_LEAST;
 }
 
-static tyn_result create_resource(tyn_graph *g, const resource *r, phys *p, VkDeviceSize expected)
+static tyn_result make_object(tyn_graph *g, const resource *r, phys *p)
 {
     const VkDeviceSize bytes = p->bytes < 16 ? 16 : p->bytes; // a texel at least
-    if (p->shared) {
-        return r->dim == TYN_BUFFER ? make_buffer(g, bytes, p->buffer_usage, r->name, &p->buffer)
-                                    : make_image(g, r, p);
-    }
-    const bool history = r->kind == RESOURCE_HISTORY;
-    tyn_heap *heap = history ? &p->heap : &g->heap;
-    expected = history ? 0 : expected;
-    return r->dim == TYN_BUFFER ? create_buffer(g, heap, bytes, p->buffer_usage, TYN_MEMORY_DEVICE,
-                                                expected, r->name, &p->buffer, NULL)
-                                : create_image(g, heap, r, p, expected);
+    return r->dim == TYN_BUFFER ? make_buffer(g, bytes, p->buffer_usage, r->name, &p->buffer)
+                                : make_image(g, r, p);
 }
 
-// Memory, and views, of what shares it.
-static tyn_result complete_shared(tyn_graph *g)
+// In a heap of its own, so that it outlives the others, or with the others of this compilation.
+static tyn_heap *heap_of(tyn_graph *g, const resource *r, phys *p)
 {
-    VkDeviceSize passing = 0;
-    tyn_result result = graph_bind_shared(g, &passing);
-    g->transient_bytes += passing;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
-        if (g->phys[i].shared && g->resources[i].dim != TYN_BUFFER && !g->phys[i].view) {
-            result = make_views(g, &g->resources[i], &g->phys[i]);
-        }
-    }
-    return result;
+    return r->kind == RESOURCE_HISTORY ? &p->heap : &g->heap;
 }
 
-static tyn_result create_readbacks(tyn_graph *g)
+static tyn_result draft_resource(tyn_graph *g, const resource *r, phys *p, VkDeviceSize *expected)
+{
+    p->made = g->frame;
+    p->identity = graph_identity(g, r);
+    p->age = r->kind == RESOURCE_HISTORY ? 0 : g->age;
+    const tyn_result result = make_object(g, r, p);
+    if (result != TYN_OK || p->shared) {
+        return result;
+    }
+    const VkMemoryRequirements need = graph_requirements(g, p);
+    const VkDeviceSize likely = r->kind == RESOURCE_HISTORY ? 0 : *expected;
+    *expected -= *expected > p->bytes ? p->bytes : *expected;
+    return tyn_heap_place(g->dev, heap_of(g, r, p), &need, TYN_MEMORY_DEVICE, likely, &p->place);
+}
+
+tyn_result graph_draft_readbacks(tyn_graph *g)
 {
     tyn_result result = TYN_OK;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
         phys *p = &g->phys[g->outputs[i].ref.resource - 1];
-        if (g->outputs[i].readback && !p->readback) {
-            result = create_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                   TYN_MEMORY_READBACK, p->bytes, "readback", &p->readback,
-                                   &p->readback_ptr);
+        if (g->outputs[i].readback && !p->readback.buffer) {
+            result = draft_host_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                       TYN_MEMORY_READBACK, "readback", &p->readback);
         }
     }
     return result;
 }
 
-tyn_result graph_create_resources(tyn_graph *g, heritage *old)
+// Which resources share memory; bytes that the others will ask for.
+static VkDeviceSize expect_bytes(tyn_graph *g)
 {
     VkDeviceSize expected = 0;
     for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
-        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY || g->poison) {
-            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        }
+        p->bytes = graph_resource_bytes(r);
+        p->borrowed = r->kind == RESOURCE_IMPORT;
+        p->shared = p->kept ? p->shared : may_share(g, r);
+        expected += p->borrowed || p->shared || p->kept ? 0 : p->bytes + (64u << 10);
     }
-    graph_inherit(g, old);
-    if (graph_keep_places(g) != TYN_OK) {
-        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
-    }
-    for (uint32_t i = 0; i < g->num_resources; i++) {
-        const resource *r = &g->resources[i];
-        const bool kept = g->phys[i].identity;
-        g->phys[i].shared = kept ? g->phys[i].shared : may_share(g, r);
-        expected += r->kind == RESOURCE_IMPORT || g->phys[i].shared || kept
-                        ? 0
-                        : graph_resource_bytes(r) + (64u << 10);
-    }
+    return expected;
+}
+
+tyn_result graph_draft_resources(tyn_graph *g)
+{
+    VkDeviceSize expected = expect_bytes(g);
     g->persistent_bytes = g->transient_bytes = 0;
     tyn_result result = TYN_OK;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
-        p->bytes = graph_resource_bytes(r);
-        if (r->kind == RESOURCE_IMPORT) {
+        if (p->borrowed) {
             p->image = r->image.image;
-            p->borrowed = true;
             continue;
         }
         if (r->kind != RESOURCE_SCRATCH) {
@@ -238,69 +240,80 @@ tyn_result graph_create_resources(tyn_graph *g, heritage *old)
         } else if (!p->shared) {
             g->transient_bytes += p->bytes;
         }
-        if (p->identity) {
-            continue; // inherited
-        }
-        p->made = g->frame;
-        p->identity = graph_identity(g, r);
-        p->age = r->kind == RESOURCE_HISTORY ? 0 : g->age;
-        result = create_resource(g, r, p, expected);
-        if (!p->shared) {
-            expected -= expected > p->bytes ? p->bytes : expected;
-        }
+        result = p->kept ? TYN_OK : draft_resource(g, r, p, &expected);
     }
-    result = result == TYN_OK ? complete_shared(g) : result;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
-        result = create_texel_views(g, &g->phys[i], g->resources[i].name);
-    }
-    return result == TYN_OK ? create_readbacks(g) : result;
-}
-
-// Zero-filled stand-ins for optional inputs that nothing is connected to: made once.
-tyn_result graph_create_dummies(tyn_graph *g)
-{
-    if (g->dummy_heap.num_blocks) {
-        return TYN_OK;
-    }
-    for (int d = 0; d < NUM_DUMMIES; d++) {
-        g->dummy[d].made = g->frame;
-    }
-    tyn_result result = create_buffer(
-        g, &g->dummy_heap, 256,
-        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-        TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
-    g->dummy[TYN_BUFFER].bytes = 256;
-    g->dummy[TYN_BUFFER].texel_uses = (1u << NUM_TEXEL_FORMATS) - 1;
-    result = result == TYN_OK ? create_texel_views(g, &g->dummy[TYN_BUFFER], "none") : result;
-    for (int d = TYN_IMAGE_2D; result == TYN_OK && d < NUM_DUMMIES; d++) {
-        const bool words = d == DUMMY_WORDS;
-        g->dummy[d].image_usage =
-            (words ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT) |
-            VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        result = create_image(
-            g, &g->dummy_heap,
-            &(resource){.name = "none",
-                        .dim = words ? TYN_IMAGE_2D : (tyn_dim)d,
-                        .format = words ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT,
-                        .extent = {1, 1, 1},
-                        .mips = 1},
-            &g->dummy[d], 0);
-    }
-    g->dummy_ready = false;
     return result;
 }
 
-bool graph_uploads_staged(const tyn_graph *g)
+// By tyn_dim, and DUMMY_WORDS: zeros that are bound where an optional input is absent.
+static resource dummy_resource(int d)
 {
-    for (uint32_t i = 0; i < g->num_resources; i++) {
-        const resource *r = &g->resources[i];
-        bool big = r->kind == RESOURCE_UPLOAD && (r->fill || r->extent.x > INLINE_UPLOAD);
-        if (big && g->phys[i].content != r->content && g->phys[i].staged != r->content) {
-            return false;
+    const bool buffer = d == TYN_BUFFER, words = d == DUMMY_WORDS;
+    return (resource){.name = "none",
+                      .kind = RESOURCE_OUT,
+                      .dim = words ? TYN_IMAGE_2D : (tyn_dim)d,
+                      .format = buffer  ? VK_FORMAT_UNDEFINED
+                                : words ? VK_FORMAT_R32G32_UINT
+                                        : VK_FORMAT_R32G32B32A32_SFLOAT,
+                      .extent = {buffer ? DUMMY_BYTES : 1, 1, 1},
+                      .mips = 1};
+}
+
+// Made once.
+tyn_result graph_draft_dummies(tyn_graph *g)
+{
+    tyn_result result = TYN_OK;
+    const bool there = g->dummy_heap.num_blocks > 0;
+    for (int d = 0; result == TYN_OK && !there && d < NUM_DUMMIES; d++) {
+        const resource r = dummy_resource(d);
+        phys *p = &g->dummy[d];
+        *p = (phys){.made = g->frame,
+                    .bytes = d == TYN_BUFFER ? DUMMY_BYTES : 0,
+                    .buffer_usage =
+                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                    .texel_uses = d == TYN_BUFFER ? (1u << NUM_TEXEL_FORMATS) - 1 : 0,
+                    .image_usage = (d == DUMMY_WORDS ? VK_IMAGE_USAGE_STORAGE_BIT
+                                                     : VK_IMAGE_USAGE_SAMPLED_BIT) |
+                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+        result = make_object(g, &r, p);
+        if (result == TYN_OK) {
+            const VkMemoryRequirements need = graph_requirements(g, p);
+            result = tyn_heap_place(g->dev, &g->dummy_heap, &need, TYN_MEMORY_DEVICE, 0, &p->place);
         }
+        g->dummy_ready = false;
     }
-    return true;
+    return result;
+}
+
+// Of an object without memory. Places that are shared have been bound.
+static tyn_result bind_object(tyn_graph *g, const tyn_heap *heap, const resource *r, phys *p)
+{
+    tyn_result result = TYN_OK;
+    if (p->image) {
+        result = p->shared ? result : tyn_heap_bind_image(g->dev, heap, p->image, p->place);
+        return result == TYN_OK ? make_views(g, r, p) : result;
+    }
+    result = p->shared ? result : tyn_heap_bind_buffer(g->dev, heap, p->buffer, p->place, NULL);
+    return result == TYN_OK ? create_texel_views(g, p, r->name) : result;
+}
+
+tyn_result graph_bind_objects(tyn_graph *g)
+{
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        phys *p = &g->phys[i];
+        result = p->kept || p->borrowed ? TYN_OK : bind_object(g, heap_of(g, r, p), r, p);
+        result = result == TYN_OK ? bind_host_buffer(g, &g->heap, &p->readback) : result;
+        result = result == TYN_OK ? bind_host_buffer(g, &g->staging_heap, &p->staging) : result;
+    }
+    for (int d = 0; result == TYN_OK && d < NUM_DUMMIES; d++) {
+        const resource r = dummy_resource(d);
+        const bool bound = g->dummy[d].view || g->dummy[d].texels[0];
+        result = bound ? TYN_OK : bind_object(g, &g->dummy_heap, &r, &g->dummy[d]);
+    }
+    return result;
 }
 
 static bool wants_staging(const resource *r, const phys *p)
@@ -309,16 +322,26 @@ static bool wants_staging(const resource *r, const phys *p)
     return big && p->content != r->content;
 }
 
-tyn_result graph_create_staging(tyn_graph *g)
+bool graph_uploads_staged(const tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        if (wants_staging(&g->resources[i], &g->phys[i]) &&
+            g->phys[i].staged != g->resources[i].content) {
+            return false;
+        }
+    }
+    return true;
+}
+
+tyn_result graph_draft_staging(tyn_graph *g)
 {
     tyn_result result = TYN_OK;
-    g->staging_made = g->frame;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
         phys *p = &g->phys[i];
         if (wants_staging(&g->resources[i], p)) {
             result =
-                create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                              TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
+                draft_host_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                  TYN_MEMORY_UPLOAD, "staging", &p->staging);
         }
     }
     return result;
@@ -333,9 +356,9 @@ void graph_fill_staging(tyn_graph *g)
             continue;
         }
         if (r->fill) {
-            r->fill(r->user, p->staging_ptr);
+            r->fill(r->user, p->staging.mapped);
         } else {
-            memcpy(p->staging_ptr, r->data, r->key);
+            memcpy(p->staging.mapped, r->data, r->key);
         }
         p->staged = r->content;
     }
@@ -344,8 +367,9 @@ void graph_fill_staging(tyn_graph *g)
 void graph_free_staging(tyn_graph *g)
 {
     for (uint32_t i = 0; i < g->num_phys; i++) {
-        graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)g->phys[i].staging, g->staging_made);
-        g->phys[i].staging = VK_NULL_HANDLE;
+        graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)g->phys[i].staging.buffer,
+                     g->staging_made);
+        g->phys[i].staging = (host_buffer){0};
         g->phys[i].staged = 0;
     }
     graph_retire_heap(g, &g->staging_heap, g->staging_made);
@@ -364,7 +388,7 @@ void graph_destroy_phys(tyn_graph *g, phys *p)
         graph_retire(g, VK_OBJECT_TYPE_BUFFER_VIEW, (uint64_t)p->texels[i], p->made);
     }
     graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->buffer, p->made);
-    graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->readback, p->made);
+    graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->readback.buffer, p->made);
     graph_retire_heap(g, &p->heap, p->made);
     *p = (phys){0};
 }

@@ -11,7 +11,11 @@
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
 enum { NUM_TEXEL_FORMATS = 4 };
-enum { DUMMY_WORDS = TYN_IMAGE_3D + 1, NUM_DUMMIES }; // of two words a texel: what is stored packed
+enum {
+    DUMMY_BYTES = 256,
+    DUMMY_WORDS = TYN_IMAGE_3D + 1,
+    NUM_DUMMIES
+}; // of two words a texel: what is stored packed
 
 typedef enum resource_kind {
     RESOURCE_OUT = 0, // made by a node, kept between frames
@@ -61,6 +65,12 @@ typedef struct output {
     bool readback;
 } output;
 
+typedef struct host_buffer { // that the host sees
+    VkBuffer buffer;
+    tyn_place place;
+    void *mapped; // NULL: not bound yet
+} host_buffer;
+
 // The Vulkan side of a resource.
 typedef struct phys {
     VkImage image;
@@ -84,17 +94,16 @@ typedef struct phys {
     uint64_t age;      // which heap it lies in: graph.age when it was made; 0 = its own
     tyn_heap heap;     // HISTORY: its own, so that it outlives the others
     uint64_t made;     // graph.frame when it was made
-    VkBuffer staging;  // UPLOAD, big: host memory waiting to be copied
-    void *staging_ptr;
-    uint64_t staged; // content hash in staging; 0 = none
-    VkBuffer readback;
-    void *readback_ptr;
+    bool kept;         // taken over from the compilation before
+    tyn_place place;   // in its heap, unless it is shared
+    host_buffer staging; // UPLOAD, big: waits to be copied
+    uint64_t staged;     // content hash in staging; 0 = none
+    host_buffer readback;
     uint64_t read; // content in readback
 } phys;
 
 typedef struct shared_block { // one block of memory that lasts as long as something lies in it
-    tyn_heap heap;
-    tyn_allocation memory;
+    tyn_heap heap;            // this block alone
     VkDeviceSize size, align;
     uint32_t id, type;
     uint64_t made; // graph.frame then
@@ -139,7 +148,7 @@ typedef struct survey {
     uint32_t sets, uniform_buffers, storage_buffers, texel_buffers, storage_images, sampled_images;
 } survey;
 
-// What the last compilation leaves to this one: histories, uploads, what nodes made and where they worked.
+// Resources of the last compilation that this one does not use.
 typedef struct heritage {
     phys *items;
     uint32_t count;
@@ -211,6 +220,13 @@ struct tyn_graph {
     pipeline_list wanted; // that are being compiled in the background
 };
 
+typedef struct draft {
+    arrangement how;
+    survey survey;    // not set by ARRANGE_UPLOADS
+    tyn_graph before; // restored if the draft is undone
+    heritage old;     // resources of `before` that the draft does not use
+} draft;
+
 typedef enum recorder_mode {
     RECORD_SURVEY = 0,
     RECORD_PIPELINES,
@@ -259,38 +275,42 @@ tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
 uint64_t graph_structure(const tyn_graph *g, const survey *s);
 // Is the declaration what was compiled?
 bool graph_same_structure(tyn_graph *g);
-// Resources, with what is inherited of `old`, and their memory; stand-ins for optional inputs; uploads in host memory.
-tyn_result graph_create_resources(tyn_graph *g, heritage *old);
-tyn_result graph_create_dummies(tyn_graph *g);
-tyn_result graph_create_staging(tyn_graph *g);
+// arrange.c: drafts objects for the declaration, without memory, in place of the compiled ones, which stay in d->before.
+// Fails as if it had not been called.
+tyn_result graph_draft(tyn_graph *g, arrangement how, draft *d);
+// The most device memory that there would be if it were committed.
+VkDeviceSize graph_draft_bytes(const tyn_graph *g, const draft *d);
+void graph_undo(tyn_graph *g, draft *d);
+// Gives up what the draft does not use, and allocates. If that fails the graph is to be finished.
+tyn_result graph_commit(tyn_graph *g, draft *d);
+// budget.c: as asked, or anew if only that keeps to the budget; else it is refused with a line.
+tyn_result graph_draft_in_budget(tyn_graph *g, arrangement how, draft *d);
+bool graph_fits_budget(const tyn_graph *g, const draft *d);
+// allocate.c: objects of a draft, with their places in heaps.
+tyn_result graph_draft_resources(tyn_graph *g);
+tyn_result graph_draft_readbacks(tyn_graph *g);
+tyn_result graph_draft_dummies(tyn_graph *g); // stand-ins for optional inputs
+tyn_result graph_draft_staging(tyn_graph *g); // uploads in host memory
+tyn_result graph_bind_objects(tyn_graph *g);  // once there is memory; and their views
 void graph_fill_staging(tyn_graph *g);
-// Objects and memory for the declaration, and staging. `s`: not set by ARRANGE_UPLOADS.
-tyn_result graph_arrange(tyn_graph *g, arrangement how, survey *s);
-// budget.c: the most device memory that there would be while the graph is so arranged; it stays as it is.
-tyn_result graph_try(tyn_graph *g, arrangement how, VkDeviceSize *most);
-// How it can be arranged within the budget, at best as asked; else it is refused with a line.
-tyn_result graph_keep_to_budget(tyn_graph *g, arrangement *how);
-bool graph_fits_budget(tyn_graph *g, arrangement how);
+VkMemoryRequirements graph_requirements(const tyn_graph *g, const phys *p);
 // What a later compilation may take a resource over by; 0: nothing.
 uint64_t graph_identity(const tyn_graph *g, const resource *r);
-// Takes out what this compilation may use again, without what belongs to the last one alone; the heaps stay. Without
-// memory for the list there is nothing: all starts anew.
-heritage graph_take_heritage(tyn_graph *g, bool only_histories);
-void graph_inherit(tyn_graph *g, heritage *old);     // into g->phys
-void graph_drop_heritage(tyn_graph *g, heritage *h); // what nothing has become
-void graph_free_all_aged(tyn_graph *g);
+void graph_inherit(tyn_graph *g, heritage *old, bool only_histories); // into g->phys
+// Does anything lie in the heap that compilation `age` made?
+bool graph_heap_used(const tyn_graph *g, uint64_t age);
+void graph_retire_aged(tyn_graph *g, bool all); // heaps in which nothing lies, or all
 // More memory than a fresh compilation would need by half, and not for the size of blocks alone.
-bool graph_is_wasteful(tyn_graph *g);
+bool graph_is_wasteful(const tyn_graph *g);
 // A node all of whose results were kept has nothing to do.
 bool graph_is_done(const tyn_graph *g, uint32_t index);
 // A node whose results are kept reports its last run, and goes on settling where it was.
-void graph_inherit_run(tyn_graph *g, uint32_t index, const node_run *before, uint32_t num_before);
+void graph_inherit_run(const tyn_graph *g, uint32_t index, node_run *run);
 // Pools; those of a compilation before serve again where they have room.
 tyn_result graph_create_slots(tyn_graph *g, const survey *s);
 tyn_result graph_reserve_sets(tyn_graph *g, uint32_t count);
 void graph_destroy_slot(tyn_graph *g, frame_slot *slot);
-void graph_release(tyn_graph *g); // everything compiled, but not the heaps that outlive it
-void graph_finish(tyn_graph *g);  // these too
+void graph_finish(tyn_graph *g); // everything compiled
 // All pipelines of the declaration, whatever was compiled before; in the background: TYN_PENDING until they are there.
 tyn_result graph_make_pipelines(tyn_graph *g);
 tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v); // by RECORD_PIPELINES
@@ -302,13 +322,17 @@ bool graph_retire_reserve(tyn_graph *g, uint32_t count);
 // Destroys it when the frames recorded so far are over. `made`: g->frame when it was made. `handle` may be NULL, `heap` empty.
 void graph_retire(tyn_graph *g, VkObjectType type, uint64_t handle, uint64_t made);
 void graph_retire_heap(tyn_graph *g, tyn_heap *heap, uint64_t made);
-void graph_retire_over(tyn_graph *g);   // those whose frames are over
-void graph_retire_finish(tyn_graph *g); // all: the GPU is done
+void graph_retire_over(tyn_graph *g);                // those whose frames are over
+void graph_retire_finish(tyn_graph *g);              // all: the GPU is done
+bool graph_waits(const tyn_graph *g, uint64_t made); // would it, if it were retired now?
 VkDeviceSize graph_retired_bytes(const tyn_graph *g);
-// Of what is kept from the compilation before, whatever lies in one place and may not do so any more. TYN_OK, or out of memory.
-tyn_result graph_keep_places(tyn_graph *g);
-// Memory for the resources that are `shared`, and how many bytes of it none would have for good if all were placed anew.
-tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
+// Of what is kept from the compilation before, gives back to `old` whatever lies in one place and may not do so any more.
+tyn_result graph_keep_places(tyn_graph *g, heritage *old);
+// Places for the resources that are `shared`, in blocks of before unless `anew`; counts into g->transient_bytes the bytes
+// that none would have for good if all were placed anew.
+tyn_result graph_draft_shared(tyn_graph *g, bool anew);
+tyn_result graph_bind_shared(tyn_graph *g);
+bool graph_block_used(const tyn_graph *g, const shared_block *block);
 // How much of what a resource takes lies where others that needed nodes make lie, too.
 VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index);
 // Of what a node makes and works in: in all, and how much of it lies where what other nodes make or work in does.

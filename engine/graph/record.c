@@ -71,10 +71,11 @@ static void record_upload(tyn_recorder *rec, uint32_t index)
     recorder_access(rec, index, transfer(r, true));
     if (r->fill) {
         VkBufferImageCopy copy = whole_image(r);
-        vk->CmdCopyBufferToImage(rec->cmd, p->staging, p->image,
+        vk->CmdCopyBufferToImage(rec->cmd, p->staging.buffer, p->image,
                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
     } else if (r->extent.x > INLINE_UPLOAD) {
-        vk->CmdCopyBuffer(rec->cmd, p->staging, p->buffer, 1, &(VkBufferCopy){0, 0, p->bytes});
+        vk->CmdCopyBuffer(rec->cmd, p->staging.buffer, p->buffer, 1,
+                          &(VkBufferCopy){0, 0, p->bytes});
     } else if (r->extent.x == r->key) {
         vk->CmdUpdateBuffer(rec->cmd, p->buffer, 0, r->key, r->data);
     } else { // size is not a multiple of 4
@@ -433,17 +434,18 @@ static void record_readbacks(tyn_recorder *rec)
         uint32_t index = g->outputs[i].ref.resource - 1;
         const resource *r = &g->resources[index];
         phys *p = &g->phys[index];
-        if (!g->outputs[i].readback || !p->readback || (p->read && p->read == p->content)) {
+        if (!g->outputs[i].readback || !p->readback.buffer || (p->read && p->read == p->content)) {
             continue;
         }
         recorder_access(rec, index, transfer(r, false));
         if (r->dim == TYN_BUFFER) {
-            g->dev->vk.CmdCopyBuffer(rec->cmd, p->buffer, p->readback, 1,
+            g->dev->vk.CmdCopyBuffer(rec->cmd, p->buffer, p->readback.buffer, 1,
                                      &(VkBufferCopy){0, 0, p->bytes});
         } else {
             VkBufferImageCopy copy = whole_image(r);
-            g->dev->vk.CmdCopyImageToBuffer(
-                rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, p->readback, 1, &copy);
+            g->dev->vk.CmdCopyImageToBuffer(rec->cmd, p->image,
+                                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                            p->readback.buffer, 1, &copy);
         }
         p->read = p->content;
         any = true;
@@ -565,7 +567,7 @@ const void *tyn_graph_map(tyn_graph *g, const char *name, tyn_extent *extent, Vk
             if (format) {
                 *format = r->format;
             }
-            return g->phys ? g->phys[g->outputs[i].ref.resource - 1].readback_ptr : NULL;
+            return g->phys ? g->phys[g->outputs[i].ref.resource - 1].readback.mapped : NULL;
         }
     }
     return NULL;

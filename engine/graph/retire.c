@@ -62,14 +62,19 @@ static bool is_over(const tyn_graph *g, uint64_t frame)
     return g->idle || !frame || frame + g->num_slots <= g->frame + 1;
 }
 
+bool graph_waits(const tyn_graph *g, uint64_t made)
+{
+    return made != g->frame && !is_over(g, g->frame);
+}
+
 static void retire(tyn_graph *g, retired r, uint64_t made)
 {
     retire_list *list = &g->retired;
-    if (made == g->frame || is_over(g, g->frame)) {
-        destroy(g, &r);
-    } else {
+    if (graph_waits(g, made)) {
         r.frame = g->frame;
         list->items[list->count++] = r; // reserved
+    } else {
+        destroy(g, &r);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 static const VkDeviceSize MAX_BLOCK = 256u << 20;
+static const uint32_t NO_TYPE = UINT32_MAX; // of memory: nothing is placed there
 
 bool graph_overlap(const phys *a, const phys *b)
 {
@@ -55,12 +56,7 @@ static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_sha
     const resource *r = &g->resources[index];
     const phys *p = &g->phys[index];
     const VkDeviceSize page = dev->properties.limits.bufferImageGranularity;
-    VkMemoryRequirements need;
-    if (r->dim == TYN_BUFFER) {
-        dev->vk.GetBufferMemoryRequirements(dev->device, p->buffer, &need);
-    } else {
-        dev->vk.GetImageMemoryRequirements(dev->device, p->image, &need);
-    }
+    const VkMemoryRequirements need = graph_requirements(g, p);
     // Buffers and images are neighbours: keep them a granularity page apart.
     const VkDeviceSize align = need.alignment > page ? need.alignment : page;
     *item = (tyn_share_item){
@@ -77,26 +73,33 @@ static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_sha
     }
 }
 
-static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item)
+static void settle(tyn_graph *g, uint32_t index, const tyn_share_item *item)
 {
-    const tyn_device *dev = g->dev;
     const shared_block *block = &g->blocks[item->block];
     phys *p = &g->phys[index];
     p->block = block->id;
     p->offset = item->offset;
     p->size = item->size;
-    if (block->made !=
-        g->frame) { // used before: its first layout is not to come before others are done with the place
+    if (block->made != g->frame) { // its first layout waits for what used the place before
         p->track = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
     }
-    const bool buffer = g->resources[index].dim == TYN_BUFFER;
-    const VkDeviceMemory memory = block->memory.memory;
-    const VkDeviceSize at = block->memory.offset + item->offset;
-    return tyn_vk_check(dev,
-                        buffer ? dev->vk.BindBufferMemory(dev->device, p->buffer, memory, at)
-                               : dev->vk.BindImageMemory(dev->device, p->image, memory, at),
-                        g->resources[index].name);
+}
+
+tyn_result graph_bind_shared(tyn_graph *g)
+{
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_phys; i++) {
+        const phys *p = &g->phys[i];
+        if (p->kept || !is_placed(p)) {
+            continue;
+        }
+        const tyn_heap *heap = &find_block(g, p->block)->heap;
+        const tyn_place place = {.offset = p->offset};
+        result = p->image ? tyn_heap_bind_image(g->dev, heap, p->image, place)
+                          : tyn_heap_bind_buffer(g->dev, heap, p->buffer, place, NULL);
+    }
+    return result;
 }
 
 // Does a needed node make it?
@@ -238,28 +241,25 @@ static tyn_result add_block(tyn_graph *g, const sharing *s, uint32_t index)
             block->align = item->align;
         }
     }
-    const tyn_result result =
-        tyn_heap_add(g->dev, &block->heap, block->type, block->size, block->align, &block->memory);
-    if (result == TYN_OK) {
-        g->num_blocks++;
-    } else {
-        tyn_heap_finish(g->dev, &block->heap);
-    }
-    return result;
+    g->num_blocks++;
+    return tyn_heap_add(&block->heap, &(tyn_block){.type = block->type,
+                                                   .align = block->align,
+                                                   .size = block->size,
+                                                   .used = block->size});
 }
 
-static tyn_result place(tyn_graph *g, sharing *s, VkDeviceSize *passing)
+static tyn_result place(tyn_graph *g, sharing *s, bool anew)
 {
     list_items(g, true, s);
     s->list.placed = s->list.count;
     list_items(g, false, s);
     for (uint32_t b = 0; b < g->num_blocks; b++) {
         const shared_block *block = &g->blocks[b];
-        s->list.blocks[s->list.num_blocks++] =
-            (tyn_share_block){.size = block->size, .align = block->align, .type = block->type};
+        s->list.blocks[s->list.num_blocks++] = (tyn_share_block){
+            .size = block->size, .align = block->align, .type = anew ? NO_TYPE : block->type};
     }
     tyn_share_plan(&s->list, s->follows, g->num_nodes, MAX_BLOCK);
-    g->reused = g->num_blocks > 0; // whoever used that memory last may be gone
+    g->reused = !anew && g->num_blocks > 0; // whoever used that memory last may be gone
     tyn_result result = TYN_OK;
     for (uint32_t b = g->num_blocks; result == TYN_OK && b < s->list.num_blocks; b++) {
         result = add_block(g, s, b);
@@ -269,17 +269,18 @@ static tyn_result place(tyn_graph *g, sharing *s, VkDeviceSize *passing)
         const tyn_share_item *item = &s->list.items[i];
         kept += item->kept && !item->unused ? item->size : 0;
         if (i >= s->list.placed) {
-            result = bind(g, s->indices[i], item);
+            settle(g, s->indices[i], item);
         }
     }
-    *passing = bytes_anew(g, s) - kept;
+    g->transient_bytes += bytes_anew(g, s) - kept;
     return result;
 }
 
-tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing)
+tyn_result graph_draft_shared(tyn_graph *g, bool anew)
 {
     sharing s;
-    const tyn_result result = open_sharing(g, &s) ? place(g, &s, passing) : TYN_ERR_MEMORY;
+    const tyn_result result =
+        open_sharing(g, &s) ? place(g, &s, anew) : graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     close_sharing(&s);
     return result;
 }
@@ -291,20 +292,21 @@ static uint32_t worse(const tyn_graph *g, uint32_t a, uint32_t b)
     return scratch || g->phys[a].content != g->resources[a].content ? a : b;
 }
 
-static void give_up(tyn_graph *g, uint32_t index)
+static void give_up(tyn_graph *g, uint32_t index, heritage *old)
 {
     phys *p = &g->phys[index];
     const phys uses = {.image_usage = p->image_usage,
                        .buffer_usage = p->buffer_usage,
                        .texel_uses = p->texel_uses};
-    graph_destroy_phys(g, p);
+    old->items[old->count++] = *p;
     *p = uses;
 }
 
-tyn_result graph_keep_places(tyn_graph *g)
+tyn_result graph_keep_places(tyn_graph *g, heritage *old)
 {
     sharing s;
-    const tyn_result result = open_sharing(g, &s) ? TYN_OK : TYN_ERR_MEMORY;
+    const tyn_result result =
+        open_sharing(g, &s) ? TYN_OK : graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     if (result == TYN_OK) {
         list_items(g, true, &s);
     }
@@ -313,7 +315,7 @@ tyn_result graph_keep_places(tyn_graph *g)
             const uint32_t a = s.indices[i], b = s.indices[k];
             if (graph_overlap(&g->phys[a], &g->phys[b]) &&
                 !tyn_share_apart(&s.list.items[i], &s.list.items[k], s.follows, g->num_nodes)) {
-                give_up(g, worse(g, a, b));
+                give_up(g, worse(g, a, b), old);
             }
         }
     }
@@ -321,15 +323,20 @@ tyn_result graph_keep_places(tyn_graph *g)
     return result;
 }
 
+bool graph_block_used(const tyn_graph *g, const shared_block *block)
+{
+    bool used = false;
+    for (uint32_t i = 0; i < g->num_phys; i++) {
+        used |= is_placed(&g->phys[i]) && g->phys[i].block == block->id;
+    }
+    return used;
+}
+
 void graph_retire_blocks(tyn_graph *g, bool all)
 {
     uint32_t left = 0;
     for (uint32_t b = 0; b < g->num_blocks; b++) {
-        bool used = false;
-        for (uint32_t i = 0; !all && i < g->num_phys; i++) {
-            used = used || (is_placed(&g->phys[i]) && g->phys[i].block == g->blocks[b].id);
-        }
-        if (used) {
+        if (!all && graph_block_used(g, &g->blocks[b])) {
             g->blocks[left++] = g->blocks[b];
         } else {
             graph_retire_heap(g, &g->blocks[b].heap, g->blocks[b].made);
