@@ -1,5 +1,6 @@
 // frame_scene.c -- turns a scene and a view into the blocks that shaders read.
 #include "frame/frame_scene.h"
+#include "scene/matrix.h"
 #include "scene/phase.h"
 #include "shaders/light/shadow_args.h"
 #include "shaders/surfaces/surface_table_args.h"
@@ -11,21 +12,9 @@ enum { RESAMPLED_MAX = 192, RESAMPLED_HOMOGENEOUS = 96 };
 
 // ---- small linear algebra, in double ----------------------------------------------------------
 
-static double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double length3(const double a[3])
 {
-    return sqrt(dot3(a, a));
-}
-
-static void cross3(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
+    return sqrt(vec_dot(a, a));
 }
 
 // A rigid frame: axes of M in the world, and its origin.
@@ -37,7 +26,7 @@ static void to_m_direction(const rigid *m, const float world[3], float out[3])
 {
     const double w[3] = {world[0], world[1], world[2]};
     for (int a = 0; a < 3; a++) {
-        out[a] = (float)dot3(m->axes[a], w);
+        out[a] = (float)vec_dot(m->axes[a], w);
     }
 }
 
@@ -45,7 +34,7 @@ static void to_m_position(const rigid *m, const float world[3], float out[3])
 {
     const double w[3] = {world[0] - m->origin[0], world[1] - m->origin[1], world[2] - m->origin[2]};
     for (int a = 0; a < 3; a++) {
-        out[a] = (float)dot3(m->axes[a], w);
+        out[a] = (float)vec_dot(m->axes[a], w);
     }
 }
 
@@ -68,7 +57,7 @@ static bool frame_of_shape(const tyn_shape *shape, rigid *m, double extent[3], b
     for (int a = 0; a < 3; a++) {
         extent[a] = length3(c[a]);
         for (int b = 0; b < a; b++) {
-            if (fabs(dot3(c[a], c[b])) > 1e-5 * extent[a] * extent[b]) {
+            if (fabs(vec_dot(c[a], c[b])) > 1e-5 * extent[a] * extent[b]) {
                 return false;
             }
         }
@@ -78,8 +67,8 @@ static bool frame_of_shape(const tyn_shape *shape, rigid *m, double extent[3], b
             m->axes[a][j] = c[a][j] / extent[a];
         }
     }
-    cross3(m->axes[1], m->axes[2], turned);
-    *mirrored = dot3(turned, m->axes[0]) < 0;
+    vec_cross(turned, m->axes[1], m->axes[2]);
+    *mirrored = vec_dot(turned, m->axes[0]) < 0;
     if (*mirrored) {
         for (int j = 0; j < 3; j++) {
             m->axes[0][j] = -m->axes[0][j];
@@ -230,20 +219,20 @@ static void local_from_m(const tyn_shape *shape, const rigid *m, tyn_vec4 rows[3
     }
     for (int i = 0; i < 4; i++) {
         for (int a = 0; a < 3; a++) {
-            in_m[i][a] = dot3(m->axes[a], c[i]);
+            in_m[i][a] = vec_dot(m->axes[a], c[i]);
         }
     }
     double bc[3], ca[3], ab[3];
-    cross3(in_m[1], in_m[2], bc);
-    cross3(in_m[2], in_m[0], ca);
-    cross3(in_m[0], in_m[1], ab);
-    double det = dot3(in_m[0], bc);
+    vec_cross(bc, in_m[1], in_m[2]);
+    vec_cross(ca, in_m[2], in_m[0]);
+    vec_cross(ab, in_m[0], in_m[1]);
+    double det = vec_dot(in_m[0], bc);
     const double *inverse[3] = {bc, ca, ab};
     for (int r = 0; r < 3; r++) {
         for (int a = 0; a < 3; a++) {
             rows[r][a] = (float)(inverse[r][a] / det);
         }
-        rows[r][3] = (float)(-dot3(inverse[r], in_m[3]) / det);
+        rows[r][3] = (float)(-vec_dot(inverse[r], in_m[3]) / det);
     }
 }
 
@@ -392,10 +381,10 @@ static void build_camera(tyn_frame_scene *out, const tyn_view *view, const tyn_f
         from[i] = p->origin[i] - m->origin[i];
     }
     for (int a = 0; a < 3; a++) {
-        b->origin[a] = (float)dot3(m->axes[a], from);
-        b->right[a] = (float)dot3(m->axes[a], p->right);
-        b->up[a] = (float)dot3(m->axes[a], p->up);
-        b->forward[a] = (float)dot3(m->axes[a], p->forward);
+        b->origin[a] = (float)vec_dot(m->axes[a], from);
+        b->right[a] = (float)vec_dot(m->axes[a], p->right);
+        b->up[a] = (float)vec_dot(m->axes[a], p->up);
+        b->forward[a] = (float)vec_dot(m->axes[a], p->forward);
     }
     b->orthographic = p->orthographic;
     b->half_width = (float)p->half[0];
@@ -456,7 +445,7 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
         {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
     for (int r = 0; r < 3; r++) {
         for (int a = 0; a < 3; a++) {
-            b->rows[r][a] = (float)dot3(map_to_world[r], m->axes[a]);
+            b->rows[r][a] = (float)vec_dot(map_to_world[r], m->axes[a]);
         }
         b->radiance[r] = env->radiance[r] * tyn_environment_strength(env);
         b->mean[r] = b->radiance[r] * (b->has_map ? (float)map->mean[r] : 1.0f);
@@ -513,7 +502,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
             b->from_world[r][a] = (float)m->axes[r][a];
         }
         b->to_world[r][3] = (float)m->origin[r];
-        b->from_world[r][3] = (float)-dot3(m->axes[r], m->origin);
+        b->from_world[r][3] = (float)-vec_dot(m->axes[r], m->origin);
         b->lo[r] = data->lo[r];
         b->hi[r] = data->hi[r];
     }
@@ -619,7 +608,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
         for (int j = 0; j < 3; j++) {
             out->m_from_world[j * 4 + a] = (float)m.axes[a][j];
         }
-        out->m_from_world[12 + a] = (float)-dot3(m.axes[a], m.origin);
+        out->m_from_world[12 + a] = (float)-vec_dot(m.axes[a], m.origin);
     }
     out->m_from_world[15] = 1;
     return TYN_OK;

@@ -1,6 +1,7 @@
 // projection.c -- see projection.h.
 #include "frame/projection.h"
 #include "scene/check.h"
+#include "scene/matrix.h"
 #include <math.h>
 #include <string.h>
 
@@ -9,21 +10,9 @@
 // Smaller than this, against what it is made of, is what rounding of floats leaves of 0.
 static const double TINY = 1e-6, ASKEW = 1e-4;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static double norm(const double a[3])
 {
-    return sqrt(dot(a, a));
+    return sqrt(vec_dot(a, a));
 }
 
 static bool finite_floats(const float *m, int count)
@@ -39,10 +28,10 @@ static bool finite_floats(const float *m, int count)
 static bool meet(const double a[4], const double b[4], const double c[4], double p[3])
 {
     double bc[3], ca[3], ab[3];
-    cross(b, c, bc);
-    cross(c, a, ca);
-    cross(a, b, ab);
-    const double det = dot(a, bc), size = norm(a) * norm(b) * norm(c);
+    vec_cross(bc, b, c);
+    vec_cross(ca, c, a);
+    vec_cross(ab, a, b);
+    const double det = vec_dot(a, bc), size = norm(a) * norm(b) * norm(c);
     for (int i = 0; i < 3; i++) {
         p[i] = -(a[3] * bc[i] + b[3] * ca[i] + c[3] * ab[i]) / det;
     }
@@ -82,13 +71,13 @@ static tyn_result set_picture(tyn_frame_projection *out, const double x[3], cons
         out->right[a] = x[a] / out->half[0];
         out->up[a] = -y[a] / out->half[1];
     }
-    if (fabs(dot(out->right, out->up)) > ASKEW) {
+    if (fabs(vec_dot(out->right, out->up)) > ASKEW) {
         FAULT("view_to_clip x world_to_view: the picture's sides must be at right angles (the "
               "cosine between them is %g)",
-              dot(out->right, out->up));
+              vec_dot(out->right, out->up));
     }
-    out->shift[0] = dot(middle, out->right) / out->half[0];
-    out->shift[1] = dot(middle, out->up) / out->half[1];
+    out->shift[0] = vec_dot(middle, out->right) / out->half[0];
+    out->shift[1] = vec_dot(middle, out->up) / out->half[1];
     return TYN_OK;
 }
 
@@ -96,10 +85,10 @@ static tyn_result from_perspective(tyn_frame_projection *out, const clip_rows *r
                                    const tyn_log *log)
 {
     double x[3], y[3], middle[3];
-    cross(r->y, r->w, x);
-    cross(r->w, r->x, y);
-    cross(r->x, r->y, middle);
-    const double length = norm(r->w), det = dot(r->w, middle);
+    vec_cross(x, r->y, r->w);
+    vec_cross(y, r->w, r->x);
+    vec_cross(middle, r->x, r->y);
+    const double length = norm(r->w), det = vec_dot(r->w, middle);
     if (!meet(r->x, r->y, r->w, out->origin)) {
         FAULT("view_to_clip x world_to_view is singular: its rows x, y and w must meet in one eye");
     }
@@ -118,7 +107,7 @@ static tyn_result from_orthographic(tyn_frame_projection *out, const clip_rows *
 {
     double x[3], y[3], across[3];
     const double w = r->w[3], none[3] = {0, 0, 0};
-    cross(r->x, r->y, across);
+    vec_cross(across, r->x, r->y);
     const double length = norm(across);
     if (w == 0 || !(length > TINY * norm(r->x) * norm(r->y)) ||
         !meet(r->x, r->y, r->view_z, out->origin)) {
@@ -127,12 +116,12 @@ static tyn_result from_orthographic(tyn_frame_projection *out, const clip_rows *
               "a w that is not 0 (it is %g)",
               w);
     }
-    const double sign = dot(across, r->view_z) < 0 ? 1 : -1; // views look along -z
+    const double sign = vec_dot(across, r->view_z) < 0 ? 1 : -1; // views look along -z
     for (int a = 0; a < 3; a++) {
         out->forward[a] = sign * across[a] / length;
     }
-    cross(r->y, out->forward, x);
-    cross(out->forward, r->x, y);
+    vec_cross(x, r->y, out->forward);
+    vec_cross(y, out->forward, r->x);
     const double scale = w / (sign * length); // w / det(x, y, forward)
     for (int a = 0; a < 3; a++) {
         x[a] *= scale;
@@ -145,8 +134,8 @@ static tyn_result from_orthographic(tyn_frame_projection *out, const clip_rows *
 static tyn_result set_depth(tyn_frame_projection *out, const clip_rows *r, bool wanted,
                             const tyn_log *log)
 {
-    const double w = out->orthographic ? r->w[3] : norm(r->w), along = dot(r->z, out->forward);
-    const double at_origin = dot(r->z, out->origin) + r->z[3];
+    const double w = out->orthographic ? r->w[3] : norm(r->w), along = vec_dot(r->z, out->forward);
+    const double at_origin = vec_dot(r->z, out->origin) + r->z[3];
     double aside = 0;
     for (int a = 0; a < 3; a++) {
         aside = fmax(aside, fabs(r->z[a] - along * out->forward[a]));

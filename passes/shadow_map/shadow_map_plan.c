@@ -3,6 +3,7 @@
 // A map of a sun is fitted around the surfaces as the light sees them: what is outside is lit. Maps are a
 // texel wider than need be on all sides, so that the texels around any place inside belong to the map.
 #include "shadow_map.h"
+#include "scene/matrix.h"
 #include <math.h>
 #include <string.h>
 
@@ -10,21 +11,9 @@ typedef struct frame { // rows of an affine map
     double rows[3][4];
 } frame;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static bool normalise(double v[3])
 {
-    double length = sqrt(dot(v, v));
+    double length = sqrt(vec_dot(v, v));
     for (int c = 0; c < 3 && length > 0; c++) {
         v[c] /= length;
     }
@@ -35,10 +24,10 @@ static bool normalise(double v[3])
 static bool across(const double axis[3], const double hint[3], double u[3], double v[3])
 {
     for (int c = 0; c < 3; c++) {
-        u[c] = hint[c] - dot(hint, axis) * axis[c];
+        u[c] = hint[c] - vec_dot(hint, axis) * axis[c];
     }
     bool possible = normalise(u);
-    cross(axis, u, v);
+    vec_cross(v, axis, u);
     return possible;
 }
 
