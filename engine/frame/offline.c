@@ -1,12 +1,12 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
+#include "base/clock.h"
 #include "frame/context.h"
 #include "frame/projection.h"
 #include "frame/submission.h"
 #include "base/given.h"
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 // A part of a picture is rendered with a margin and from a multiple of pixels on, so that each pixel has the neighbours that it
 // has in the whole picture, and grids of pixels begin at the same places. By default settings patterns of `shade` are of 5 x 5
@@ -36,13 +36,6 @@ struct tyn_offline {
     shown_part shown;            // of the last frame's pictures
     void *pictures[NUM_OUTPUTS]; // parts of them, by the output's bit
 };
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params, tyn_offline **out)
 {
@@ -200,7 +193,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     uint32_t samples = view->num_samples ? view->num_samples : 1;
     // Every record of the frame gets the same shape of work, so that it is prepared once.
     part.num_samples = batch < samples ? batch : samples;
-    double start = now_ms();
+    double start = tyn_now_ms();
     tyn_result result = tyn_context_prepare(off->context, &frame);
     if (result == TYN_OK) {
         off->shown = shown; // of a frame that is refused the pictures are those of the last one
@@ -208,11 +201,11 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
         result = submit(off, &frame);
         frame.setup_only = false;
     }
-    off->setup_ms = now_ms() - start;
+    off->setup_ms = tyn_now_ms() - start;
 
     off->num_nodes = 0;
     off->samples = 0;
-    start = now_ms();
+    start = tyn_now_ms();
     for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
         part.first_sample = view->first_sample + done;
         part.num_samples = samples - done < batch ? samples - done : batch;
@@ -225,7 +218,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
             result = go_on ? TYN_OK : TYN_ERR_STOPPED;
         }
     }
-    off->frame_ms = now_ms() - start;
+    off->frame_ms = tyn_now_ms() - start;
     return result;
 }
 

@@ -1,17 +1,10 @@
 // pass_time.c -- one pass alone on a device of our own, for its time.
 #include <tyndall/offline.h>
+#include "base/clock.h"
 #include "frame/submission.h"
 #include "graph/graph.h"
 #include <math.h>
 #include <string.h>
-#include <time.h>
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 // Declares the node, with the first thing it makes as what is wanted.
 static tyn_result declare(tyn_graph *g, const tyn_pass_desc *pass, const void *params)
@@ -35,11 +28,11 @@ static tyn_result run(tyn_submission *s, tyn_graph *g, double *ms)
     if (result == TYN_OK) {
         result = tyn_graph_record(g, s->cmd);
     }
-    const double start = now_ms();
+    const double start = tyn_now_ms();
     if (result == TYN_OK) {
         result = tyn_submission_run(s, "running a pass");
     }
-    *ms = now_ms() - start;
+    *ms = tyn_now_ms() - start;
     const tyn_node_stats *stats;
     if (result == TYN_OK && tyn_graph_stats(g, &stats) && stats->gpu_ms > 0) {
         *ms = stats->gpu_ms;

@@ -1,16 +1,9 @@
 // compiler.c -- see compiler.h: the queue of pipelines, the threads that work it off, and the host's jobs.
 #include "gpu/compiler.h"
+#include "base/clock.h"
 #include <signal.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 // ---- the queue: under the lock ------------------------------------------------------------------
 
@@ -44,9 +37,9 @@ static void compile(tyn_compiler *c, tyn_variant *v)
     pthread_mutex_unlock(&c->lock);
     VkPipeline made = VK_NULL_HANDLE;
     bool cached = false;
-    const double start = now();
+    const double start = tyn_now_ms();
     const VkResult result = tyn_pipeline_compile(c->dev, v->pipeline, v->spec, &made, &cached);
-    const double seconds = now() - start;
+    const double seconds = 1e-3 * (tyn_now_ms() - start);
     pthread_mutex_lock(&c->lock);
     v->handle = made;
     v->result = result;

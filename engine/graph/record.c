@@ -1,9 +1,9 @@
 // record.c -- one frame: uploads, the nodes that must run, readbacks; then what happened.
 #include "graph/internal.h"
+#include "base/clock.h"
 #include "base/hash.h"
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 tyn_result tyn_graph_create(tyn_device *dev, uint32_t frames_in_flight, tyn_graph **out)
 {
@@ -35,13 +35,6 @@ void tyn_graph_destroy(tyn_graph **graph)
     free(g->sets.items);
     free(g);
     *graph = NULL;
-}
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
 // ---- uploads and first contents ---------------------------------------------------------------
@@ -382,7 +375,7 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     const node *n = &g->nodes[index];
     node_run *run = &g->runs[index];
     const tyn_device *dev = g->dev;
-    double start = now_ms();
+    double start = tyn_now_ms();
     if (dev->debug_names) {
         dev->vk.CmdBeginDebugUtilsLabelEXT(
             cmd, &(VkDebugUtilsLabelEXT){.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
@@ -416,7 +409,7 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     run->held = 0;
     run->settled = starts_history(g, n) ? UINT32_MAX : n->settled;
     run->stats.state = r.dispatches ? TYN_NODE_RAN : TYN_NODE_EMPTY;
-    run->stats.cpu_ms = now_ms() - start;
+    run->stats.cpu_ms = tyn_now_ms() - start;
     run->stats.dispatches = r.dispatches;
     run->stats.barriers = r.barriers;
     run->stats.num_work = r.num_work;
