@@ -1,10 +1,9 @@
 // check.c -- are the numbers of a frame fit?
 #include "frame/context.h"
+#include "base/fault.h"
 #include "gpu/device.h"
 #include "registry/registry.h"
 #include "scene/check.h"
-
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 // Of outputs that the method does not make, the first.
 static tyn_result refuse_outputs(const tyn_context *ctx, uint32_t missing)

@@ -1,9 +1,8 @@
 // check_images.c -- are the images that the host lends fit?
 #include "frame/context.h"
+#include "base/fault.h"
 #include "gpu/device.h"
 #include <stdio.h>
-
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 // An image that the host lends: `what` it is, and what it must be able to do.
 static tyn_result check_image(const tyn_device *dev, const tyn_image *image, const char *what,

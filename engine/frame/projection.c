@@ -1,11 +1,10 @@
 // projection.c -- see projection.h.
 #include "frame/projection.h"
+#include "base/fault.h"
 #include "scene/check.h"
 #include "scene/matrix.h"
 #include <math.h>
 #include <string.h>
-
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 // Smaller than this, against what it is made of, is what rounding of floats leaves of 0.
 static const double TINY = 1e-6, ASKEW = 1e-4;

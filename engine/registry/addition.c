@@ -2,7 +2,7 @@
 #include "registry/addition.h"
 #include <string.h>
 
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), false)
+#define REFUSE(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), false)
 
 const tyn_limit tyn_limits_untold[] = {
     {.key = "limits",
@@ -18,8 +18,8 @@ static bool check_name(const char *who, const char *what, const char *name, cons
     if (!name || !name[0] || strlen(name) > 31 ||
         strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") !=
             strlen(name)) {
-        FAULT("%s: the name of a %s is '%s'; it must be 1 to 31 letters, digits, '_' and '-'", who,
-              what, name ? name : "NULL");
+        REFUSE("%s: the name of a %s is '%s'; it must be 1 to 31 letters, digits, '_' and '-'", who,
+               what, name ? name : "NULL");
     }
     return true;
 }
@@ -31,24 +31,24 @@ static bool check_kernel(const char *who, const tyn_pass_desc *pass, const tyn_k
     const char *name = k->name ? k->name : "NULL";
     if (!k->name || !k->spirv || k->spirv_size < 20 || k->spirv_size % 4 ||
         k->spirv[0] != SPIRV_MAGIC) {
-        FAULT("%s: pass '%s', kernel '%s': it must have a name and SPIR-V", who, pass->name, name);
+        REFUSE("%s: pass '%s', kernel '%s': it must have a name and SPIR-V", who, pass->name, name);
     }
     if (k->num_bindings > TYN_MAX_BINDINGS || (k->num_bindings && !k->bindings) ||
         k->num_spec > TYN_MAX_SPEC || k->args_size > TYN_MAX_ARGS || k->args_size % 4) {
-        FAULT("%s: pass '%s', kernel '%s': %u bindings, %u constants and %u bytes of arguments; "
-              "%d, %d and %d (a multiple of 4) are the most",
-              who, pass->name, name, k->num_bindings, k->num_spec, k->args_size, TYN_MAX_BINDINGS,
-              TYN_MAX_SPEC, TYN_MAX_ARGS);
+        REFUSE("%s: pass '%s', kernel '%s': %u bindings, %u constants and %u bytes of arguments; "
+               "%d, %d and %d (a multiple of 4) are the most",
+               who, pass->name, name, k->num_bindings, k->num_spec, k->args_size, TYN_MAX_BINDINGS,
+               TYN_MAX_SPEC, TYN_MAX_ARGS);
     }
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         if (k->bindings[i].port >= pass->num_ports) {
-            FAULT("%s: pass '%s', kernel '%s': binding %u is of port %u; there are %u", who,
-                  pass->name, name, i, k->bindings[i].port, pass->num_ports);
+            REFUSE("%s: pass '%s', kernel '%s': binding %u is of port %u; there are %u", who,
+                   pass->name, name, i, k->bindings[i].port, pass->num_ports);
         }
     }
     if (!k->raster && !(k->local_size[0] && k->local_size[1] && k->local_size[2])) {
-        FAULT("%s: pass '%s', kernel '%s': local_size is %u x %u x %u; each must be 1 or more", who,
-              pass->name, name, k->local_size[0], k->local_size[1], k->local_size[2]);
+        REFUSE("%s: pass '%s', kernel '%s': local_size is %u x %u x %u; each must be 1 or more",
+               who, pass->name, name, k->local_size[0], k->local_size[1], k->local_size[2]);
     }
     return true;
 }
@@ -58,14 +58,14 @@ static bool check_param(const char *who, const tyn_pass_desc *pass, const tyn_pa
 {
     const char *name = p->name ? p->name : "NULL";
     if (!p->name || !p->unit || !p->doc || (p->type == TYN_PARAM_ENUM && !p->names)) {
-        FAULT("%s: pass '%s', parameter '%s': name, unit, doc and the names of words are required",
-              who, pass->name, name);
+        REFUSE("%s: pass '%s', parameter '%s': name, unit, doc and the names of words are required",
+               who, pass->name, name);
     }
     if (p->offset % 4 || p->offset + 4 > pass->params_size || !(p->min <= p->def) ||
         !(p->def <= p->max)) {
-        FAULT("%s: pass '%s', parameter '%s': it must lie within the %zu bytes of the params, and "
-              "its default %g between %g and %g",
-              who, pass->name, name, pass->params_size, p->def, p->min, p->max);
+        REFUSE("%s: pass '%s', parameter '%s': it must lie within the %zu bytes of the params, and "
+               "its default %g between %g and %g",
+               who, pass->name, name, pass->params_size, p->def, p->min, p->max);
     }
     return true;
 }
@@ -76,19 +76,20 @@ static bool check_pass(const char *who, const tyn_pass_desc *pass, const tyn_log
         return false;
     }
     if (!pass->summary || !pass->declare || !pass->record || !pass->ports || !pass->kernels) {
-        FAULT("%s: pass '%s': summary, ports, kernels, declare and record are required", who,
-              pass->name);
+        REFUSE("%s: pass '%s': summary, ports, kernels, declare and record are required", who,
+               pass->name);
     }
     if (!pass->num_ports || pass->num_ports > TYN_MAX_PORTS || !pass->num_kernels ||
         (pass->num_params && !pass->params) || pass->debug_port >= pass->num_ports) {
-        FAULT("%s: pass '%s': %u ports and %u kernels; it must have 1 to %d ports, the debug port "
-              "%u among them, and a kernel or more",
-              who, pass->name, pass->num_ports, pass->num_kernels, TYN_MAX_PORTS, pass->debug_port);
+        REFUSE("%s: pass '%s': %u ports and %u kernels; it must have 1 to %d ports, the debug port "
+               "%u among them, and a kernel or more",
+               who, pass->name, pass->num_ports, pass->num_kernels, TYN_MAX_PORTS,
+               pass->debug_port);
     }
     bool fit = true;
     for (uint32_t i = 0; i < pass->num_ports; i++) {
         if (!pass->ports[i].name || !pass->ports[i].meaning) {
-            FAULT("%s: pass '%s': port %u has no name, or no meaning", who, pass->name, i);
+            REFUSE("%s: pass '%s': port %u has no name, or no meaning", who, pass->name, i);
         }
     }
     for (uint32_t i = 0; i < pass->num_kernels && fit; i++) {
@@ -106,18 +107,18 @@ static bool check_method(const char *who, const tyn_method *method, const tyn_lo
         return false;
     }
     if (!method->info.summary || !method->declare || !method->passes || !method->info.outputs) {
-        FAULT("%s: method '%s': info.summary, info.outputs, passes and declare are required", who,
-              method->info.name);
+        REFUSE("%s: method '%s': info.summary, info.outputs, passes and declare are required", who,
+               method->info.name);
     }
     if (method->info.reference || (method->info.progressive && !method->batch)) {
-        FAULT("%s: method '%s': %s", who, method->info.name,
-              method->info.reference ? "'path' is the reference"
-                                     : "one that is progressive needs 'batch'");
+        REFUSE("%s: method '%s': %s", who, method->info.name,
+               method->info.reference ? "'path' is the reference"
+                                      : "one that is progressive needs 'batch'");
     }
     for (const tyn_limit *l = method->info.limits; l && l->key; l++) {
         if (!l->source) {
-            FAULT("%s: method '%s', limit '%s': source is required", who, method->info.name,
-                  l->key);
+            REFUSE("%s: method '%s', limit '%s': source is required", who, method->info.name,
+                   l->key);
         }
     }
     return true;
@@ -136,7 +137,7 @@ bool tyn_addition_check(const tyn_addition *a, const tyn_log *log)
         const tyn_picture_hook *h = a->hooks[i];
         fit = check_name(a->who, "hook", h->name, log);
         if (fit && (!h->reads || !h->declare)) {
-            FAULT("%s: hook '%s': reads and declare are required", a->who, h->name);
+            REFUSE("%s: hook '%s': reads and declare are required", a->who, h->name);
         }
     }
     return fit;

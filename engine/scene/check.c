@@ -1,13 +1,12 @@
 // check.c -- is every number of a scene one that the solvers can take?
 #include "scene/check.h"
+#include "base/fault.h"
 #include "base/given.h"
 #include <math.h>
 #include <stdio.h>
 #include "scene/matrix.h"
 #include "scene/phase.h"
 #include "scene/surfaces.h"
-
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 static bool finite3(const float v[3])
 {

@@ -1,4 +1,5 @@
 // phase_forms.c -- tables of phase functions, from lobes, Legendre moments or values at angles.
+#include "base/fault.h"
 #include "base/given.h"
 #include "scene/phase_table.h"
 #include <math.h>
@@ -6,7 +7,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 static const double tolerance = 0.01; // of an integral of 1
 

@@ -1,12 +1,11 @@
 // surfaces.c -- life of a scene's surfaces, their bounds, hash and checks.
 #include "scene/surfaces.h"
+#include "base/fault.h"
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
 #define FIELD(name) #name, offsetof(tyn_surface_material, name)
 const tyn_material_field tyn_material_fields[TYN_MATERIAL_NUM_FIELDS] = {
