@@ -9,6 +9,7 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/light/shadow_frame.glsl"
+#include "shaders/lattice/cell_places.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "sky_seen_args.h"
 #define SKY_MAPS_AT 2
@@ -22,12 +23,6 @@ TYN_ARGS(sky_seen_args args);
 TYN_UNIFORM(0, ordinates, ordinates_block ordinates);
 TYN_UNIFORM(1, directions, ordinates_block directions);
 TYN_WRITE(6, sky_seen, uint sky_seen_words[]);
-
-// Places in a cell, from its centre in edges: corners of a tetrahedron.
-vec3 place_in_cell(uint k)
-{
-    return 0.25 * (1.0 - 2.0 * vec3(k == 2u || k == 3u, k == 1u || k == 3u, k == 1u || k == 2u));
-}
 
 void main()
 {

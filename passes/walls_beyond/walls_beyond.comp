@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "walls_beyond_args.h"
 #include "shaders/surfaces/surface_args.h"
+#include "shaders/lattice/cell_places.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/walls_links.glsl"
 
@@ -23,12 +24,6 @@ TYN_WRITE(9, wall_links, uint wall_links[]);
 TYN_WRITE(10, wall_cells, wall_cell wall_cells[]);
 
 const uint RAYS = 4u, MOST = 3u;
-
-// In edges of a cell, from its centre: corners of a tetrahedron.
-vec3 place_in_cell(uint k)
-{
-    return 0.25 * (1.0 - 2.0 * vec3(k == 2u || k == 3u, k == 1u || k == 3u, k == 1u || k == 2u));
-}
 
 // What of the light of a diffuse surface of the normal `n` goes back through the faces that a step leaves the lattice by
 // (`outwards`): (1 + cos) / 2 to the half space behind a face, the mean of the faces.
