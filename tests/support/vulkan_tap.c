@@ -1,14 +1,14 @@
 // vulkan_tap.c -- see vulkan_tap.h.
 #include "vulkan_tap.h"
+#include "gpu/procs.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 static PFN_vkGetInstanceProcAddr real_get;
-static PFN_vkGetDeviceProcAddr real_get_device;
 
-enum { CALLS, CREATES, MEMORY, SUBMITS, WAITS, COMMANDS, FREES, NUM_COUNTS };
+enum { CALLS, CREATES, MEMORY, SUBMITS, WAITS, COMMANDS, FREES, OTHERS, NUM_COUNTS };
 static atomic_uint counts[NUM_COUNTS];
 static atomic_int live;
 
@@ -347,83 +347,35 @@ TAP_VOID(CmdClearColorImage,
           const VkImageSubresourceRange *r),
          (c, b, l, v, n, r), COMMANDS)
 
+TAP_VOID(GetPhysicalDeviceProperties2, (VkPhysicalDevice p, VkPhysicalDeviceProperties2 *out),
+         (p, out), OTHERS)
+TAP_VOID(GetPhysicalDeviceFeatures2, (VkPhysicalDevice p, VkPhysicalDeviceFeatures2 *out), (p, out),
+         OTHERS)
+TAP_VOID(GetPhysicalDeviceMemoryProperties,
+         (VkPhysicalDevice p, VkPhysicalDeviceMemoryProperties *out), (p, out), OTHERS)
+TAP_VOID(GetPhysicalDeviceQueueFamilyProperties,
+         (VkPhysicalDevice p, uint32_t *n, VkQueueFamilyProperties *out), (p, n, out), OTHERS)
+TAP_VOID(GetPhysicalDeviceFormatProperties,
+         (VkPhysicalDevice p, VkFormat f, VkFormatProperties *out), (p, f, out), OTHERS)
+TAP(GetPhysicalDeviceImageFormatProperties,
+    (VkPhysicalDevice p, VkFormat f, VkImageType t, VkImageTiling l, VkImageUsageFlags u,
+     VkImageCreateFlags c, VkImageFormatProperties *out),
+    (p, f, t, l, u, c, out), (void)0, (void)0)
+TAP_VOID(GetDeviceQueue, (VkDevice d, uint32_t f, uint32_t i, VkQueue *out), (d, f, i, out), OTHERS)
+TAP_VOID(GetBufferMemoryRequirements, (VkDevice d, VkBuffer b, VkMemoryRequirements *out),
+         (d, b, out), OTHERS)
+TAP_VOID(GetImageMemoryRequirements, (VkDevice d, VkImage i, VkMemoryRequirements *out),
+         (d, i, out), OTHERS)
+TAP_VOID(UpdateDescriptorSets,
+         (VkDevice d, uint32_t n, const VkWriteDescriptorSet *w, uint32_t m,
+          const VkCopyDescriptorSet *c),
+         (d, n, w, m, c), OTHERS)
+
 // ---- looking functions up ---------------------------------------------------------------------
 
-#define TAPPED(X)                                                                                  \
-    X(EnumeratePhysicalDevices)                                                                    \
-    X(CreateInstance)                                                                              \
-    X(CreateDebugUtilsMessengerEXT)                                                                \
-    X(CreateDevice)                                                                                \
-    X(DestroyInstance)                                                                             \
-    X(DestroyDevice)                                                                               \
-    X(DestroyDebugUtilsMessengerEXT)                                                               \
-    X(CreateSampler)                                                                               \
-    X(CreatePipelineCache)                                                                         \
-    X(CreateDescriptorSetLayout)                                                                   \
-    X(CreatePipelineLayout)                                                                        \
-    X(CreateShaderModule)                                                                          \
-    X(CreateComputePipelines)                                                                      \
-    X(CreateGraphicsPipelines)                                                                     \
-    X(CreateBuffer)                                                                                \
-    X(CreateBufferView)                                                                            \
-    X(CreateImage)                                                                                 \
-    X(CreateImageView)                                                                             \
-    X(AllocateMemory)                                                                              \
-    X(MapMemory)                                                                                   \
-    X(BindBufferMemory)                                                                            \
-    X(BindImageMemory)                                                                             \
-    X(InvalidateMappedMemoryRanges)                                                                \
-    X(CreateDescriptorPool)                                                                        \
-    X(ResetDescriptorPool)                                                                         \
-    X(AllocateDescriptorSets)                                                                      \
-    X(CreateQueryPool)                                                                             \
-    X(GetQueryPoolResults)                                                                         \
-    X(GetPipelineCacheData)                                                                        \
-    X(CreateCommandPool)                                                                           \
-    X(AllocateCommandBuffers)                                                                      \
-    X(ResetCommandPool)                                                                            \
-    X(BeginCommandBuffer)                                                                          \
-    X(EndCommandBuffer)                                                                            \
-    X(CreateFence)                                                                                 \
-    X(ResetFences)                                                                                 \
-    X(WaitForFences)                                                                               \
-    X(QueueWaitIdle)                                                                               \
-    X(DeviceWaitIdle)                                                                              \
-    X(QueueSubmit2)                                                                                \
-    X(DestroySampler)                                                                              \
-    X(DestroyPipelineCache)                                                                        \
-    X(DestroyDescriptorSetLayout)                                                                  \
-    X(DestroyPipelineLayout)                                                                       \
-    X(DestroyShaderModule)                                                                         \
-    X(DestroyPipeline)                                                                             \
-    X(DestroyBuffer)                                                                               \
-    X(DestroyBufferView)                                                                           \
-    X(DestroyImage)                                                                                \
-    X(DestroyImageView)                                                                            \
-    X(DestroyDescriptorPool)                                                                       \
-    X(DestroyQueryPool)                                                                            \
-    X(DestroyCommandPool)                                                                          \
-    X(DestroyFence)                                                                                \
-    X(FreeMemory)                                                                                  \
-    X(CmdResetQueryPool)                                                                           \
-    X(CmdWriteTimestamp2)                                                                          \
-    X(CmdPipelineBarrier2)                                                                         \
-    X(CmdBindPipeline)                                                                             \
-    X(CmdBindDescriptorSets)                                                                       \
-    X(CmdPushConstants)                                                                            \
-    X(CmdDispatch)                                                                                 \
-    X(CmdDispatchIndirect)                                                                         \
-    X(CmdBeginRendering)                                                                           \
-    X(CmdEndRendering)                                                                             \
-    X(CmdSetViewport)                                                                              \
-    X(CmdSetScissor)                                                                               \
-    X(CmdDraw)                                                                                     \
-    X(CmdCopyBuffer)                                                                               \
-    X(CmdCopyBufferToImage)                                                                        \
-    X(CmdCopyImageToBuffer)                                                                        \
-    X(CmdUpdateBuffer)                                                                             \
-    X(CmdFillBuffer)                                                                               \
-    X(CmdClearColorImage)
+static PFN_vkGetDeviceProcAddr real_GetDeviceProcAddr;
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL tap_GetDeviceProcAddr(VkDevice device,
+                                                                      const char *name);
 
 static PFN_vkVoidFunction tap_on(const char *name, PFN_vkVoidFunction real)
 {
@@ -432,24 +384,24 @@ static PFN_vkVoidFunction tap_on(const char *name, PFN_vkVoidFunction real)
         real_##function = (PFN_vk##function)real;                                                  \
         return (PFN_vkVoidFunction)tap_##function;                                                 \
     }
-    TAPPED(X)
+    TYN_INSTANCE_PROCS(X)
+    TYN_DEVICE_PROCS(X)
+    X(CreateInstance)
+    X(CreateDebugUtilsMessengerEXT)
+    X(DestroyDebugUtilsMessengerEXT)
 #undef X
     return real;
 }
 
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device(VkDevice device, const char *name)
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL tap_GetDeviceProcAddr(VkDevice device,
+                                                                      const char *name)
 {
-    return tap_on(name, real_get_device(device, name));
+    return tap_on(name, real_GetDeviceProcAddr(device, name));
 }
 
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance(VkInstance instance, const char *name)
 {
-    PFN_vkVoidFunction real = real_get(instance, name);
-    if (real && !strcmp(name, "vkGetDeviceProcAddr")) {
-        real_get_device = (PFN_vkGetDeviceProcAddr)real;
-        return (PFN_vkVoidFunction)get_device;
-    }
-    return tap_on(name, real);
+    return tap_on(name, real_get(instance, name));
 }
 
 PFN_vkGetInstanceProcAddr tap_open(PFN_vkGetInstanceProcAddr real)
