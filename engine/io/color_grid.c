@@ -143,28 +143,3 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
                                   colors->data, count * 3 * sizeof *colors->data);
     return TYN_OK;
 }
-
-tyn_result tyn_temperature_load(tyn_color_grid *colors, const char *path, const char *grid,
-                                const tyn_temperature *how, double index_to_world[16],
-                                const tyn_log *log)
-{
-    if (!TYN_GIVEN(log, colors, path, how)) {
-        return TYN_ERR_PARAMS;
-    }
-    memset(colors, 0, sizeof *colors);
-    tyn_grid_job job = {.grid = grid ? grid : "temperature", .use = TYN_GRID_VALUE, .log = log};
-    tyn_result r = tyn_grid_read(&job, path);
-    if (r) {
-        return r;
-    }
-    r = tyn_color_grid_of_temperatures(colors, job.volume.size, job.volume.data, how, log);
-    if (!r) {
-        colors->name = job.volume.name;
-        job.volume.name = NULL;
-        if (index_to_world) {
-            memcpy(index_to_world, job.volume.index_to_world, sizeof job.volume.index_to_world);
-        }
-    }
-    tyn_volume_finish(&job.volume);
-    return r;
-}

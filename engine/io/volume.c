@@ -100,16 +100,6 @@ tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid)
     return TYN_OK;
 }
 
-tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
-                           uint64_t *clamped_negative, const tyn_log *log)
-{
-    tyn_grid_job job = {.volume = *volume, .channels = 1, .log = log};
-    const tyn_result r = tyn_grid_seal(&job, file, grid);
-    *volume = job.volume;
-    *clamped_negative += job.clamped;
-    return r;
-}
-
 static bool has_extension(const char *path, const char *extension)
 {
     const char *dot = strrchr(path, '.');

@@ -46,8 +46,6 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t 
 
 // After data is filled: refuses non-finite values, clamps and counts negative ones, finds the
 // maximum, hashes, names the volume. Uses other than DENSITY: as tyn_grid_use says.
-tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
-                           uint64_t *clamped_negative, const tyn_log *log);
 tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid);
 
 // What a grid is by its name: density, temperature, velocity, ...

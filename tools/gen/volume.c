@@ -35,30 +35,9 @@ void gen_grid_free(gen_grid *grid)
     *grid = (gen_grid){0};
 }
 
-static inline float mix(float a, float b, float t)
-{
-    return a + (b - a) * t;
-}
-
 static inline float clamp(float v, float lo, float hi)
 {
     return v < lo ? lo : v > hi ? hi : v;
-}
-
-float gen_grid_sample(const gen_grid *g, float x, float y, float z)
-{
-    x = clamp(x, 0.0f, (float)(g->n[0] - 1));
-    y = clamp(y, 0.0f, (float)(g->n[1] - 1));
-    z = clamp(z, 0.0f, (float)(g->n[2] - 1));
-    const int ix = (int)x, iy = (int)y, iz = (int)z;
-    const float fx = x - (float)ix, fy = y - (float)iy, fz = z - (float)iz;
-    const size_t dx = ix + 1 < g->n[0] ? 1 : 0;
-    const size_t dy = iy + 1 < g->n[1] ? (size_t)g->n[0] : 0;
-    const size_t dz = iz + 1 < g->n[2] ? (size_t)g->n[0] * (size_t)g->n[1] : 0;
-    const float *p = g->data + gen_index(g, ix, iy, iz);
-    const float a = mix(mix(p[0], p[dx], fx), mix(p[dy], p[dy + dx], fx), fy);
-    const float b = mix(mix(p[dz], p[dz + dx], fx), mix(p[dz + dy], p[dz + dy + dx], fx), fy);
-    return mix(a, b, fz);
 }
 
 bool gen_write_bytes(const char *folder, const char *file, const char *head, const void *bytes,

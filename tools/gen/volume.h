@@ -17,9 +17,6 @@ static inline size_t gen_index(const gen_grid *g, int x, int y, int z)
     return ((size_t)z * (size_t)g->n[1] + (size_t)y) * (size_t)g->n[0] + (size_t)x;
 }
 
-// Trilinear between values at integer coordinates, clamped to the edge.
-float gen_grid_sample(const gen_grid *grid, float x, float y, float z);
-
 // Writes FOLDER/FILE, little-endian: half floats, or bytes (0..255 stand for 0..1).
 bool gen_write_f16(const char *folder, const char *file, const gen_grid *grid);
 bool gen_write_u8(const char *folder, const char *file, const gen_grid *grid);

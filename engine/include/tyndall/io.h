@@ -87,11 +87,8 @@ typedef struct tyn_temperature {
     // nothing. 0: as black bodies are.
     double luminance;
 } tyn_temperature;
-// The radiance of black bodies for a medium's radiance_grid: loads a grid of scalars (NULL: "temperature"), or
-// takes values, size[0]*size[1]*size[2] of them, x fastest. Memory: 12 bytes a voxel.
-TYN_API tyn_result tyn_temperature_load(tyn_color_grid *colors, const char *path, const char *grid,
-                                        const tyn_temperature *how, double index_to_world[16],
-                                        const tyn_log *log);
+// The radiance of black bodies for a medium's radiance_grid, of size[0]*size[1]*size[2] values, x fastest. Memory: 12 bytes
+// a voxel.
 TYN_API tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t size[3],
                                                   const float *values, const tyn_temperature *how,
                                                   const tyn_log *log);
