@@ -149,9 +149,8 @@ static void add_rsm(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_
     }
     tyn_rsm_params params;
     tyn_settings_params(job->settings, &tyn_pass_rsm, &params);
-    // The same views as those of the shadow maps, smaller.
-    tyn_shadow_map_params views = {.sun_texels = params.sun_texels,
-                                   .lamp_texels = params.lamp_texels};
+    // The views of the shadow maps, smaller.
+    tyn_shadow_map_params views = {.sun_texels = 256, .lamp_texels = 64};
     tyn_shadow_map_plan(&views, frame->lights.suns, num_suns, lamps, num_lamps, &frame->surfaces);
     memcpy(params.size, views.size, sizeof params.size);
     params.num_triangles = frame->num_triangles;

@@ -215,8 +215,7 @@ static void add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p, tyn_
     field->cell =
         longest_side(job) /
         (float)(p->grids.cells > p->grids.cells_along ? p->grids.cells : p->grids.cells_along);
-    field->inscatter_is = p->grids.source == TYN_PROPAGATE_SOURCE_ACCUMULATED ? TYN_INSCATTER_SOURCE
-                                                                              : TYN_INSCATTER_PLAIN;
+    field->inscatter_is = TYN_INSCATTER_PLAIN;
 }
 
 void tyn_solve_propagation(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field)

@@ -31,6 +31,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 // Steps of a ray, at most: software devices end all loops of a thread after 65535 turns, of which a list of
 // TYN_LIGHT_LIST_MAX lights may need one for each four steps.
 static const float MOST_STEPS = 1600;
+static const float STEP = 0.5f; // between densities along rays to lights, voxels
 // Of a valid radius: the width of radial functions. Their culling radius is three times that in the paper.
 static const float RBF_WIDTH = 1.0f / 3;
 
@@ -114,7 +115,7 @@ static struct gradient_args args_of(const tyn_gradient_params *p)
         .levels = levels_of(p),
         .longest = longest_of(e),
         .radius = longest_of(e) / (float)p->cells,
-        .step = fmaxf(p->step * p->voxel, diagonal / MOST_STEPS),
+        .step = fmaxf(STEP * p->voxel, diagonal / MOST_STEPS),
         .apart = p->voxel,
         .nearest = 0.5f * p->voxel,
         .epsilon = p->epsilon,
@@ -246,8 +247,6 @@ static const tyn_param param_table[] = {
      "from a sample: exponential = L e^((x - x_j) grad L / L); linear = L + (x - x_j) grad L, as "
      "published",
      extrapolations},
-    {"step", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, step), 0.5, 0.1, 4, "voxels",
-     "between densities along rays to lights", NULL},
     {"soft", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, soft), 0, 0, 8, "cells",
      "of the finest grid, across which edges of the shadows of surfaces are soft; 0: they are "
      "sharp",

@@ -20,7 +20,6 @@ typedef struct tyn_gradient_params {
     int32_t interpolation; // "gradient.interpolation": GRADIENT_*
     int32_t weight;        // "gradient.weight": 0: (W_j - 1) / R_j^3; 1: W_j as printed
     int32_t extrapolation; // "gradient.extrapolation": 0: exponential; 1: linear
-    float step;            // "gradient.step": along rays, voxels
     float soft;            // "gradient.soft": edges of shadows, cells of the finest grid
     int32_t multiple;      // "gradient.multiple": 1: samples read the lattice
     // Set by the method.

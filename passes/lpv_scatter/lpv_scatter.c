@@ -9,6 +9,9 @@ static const tyn_port ports[] = {LPV_SCATTER_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {TYN_KERNEL(lpv_scatter)};
 
+// Rays along a side of each of a point light's six maps, or of a spot's one; less for more than four lamps.
+enum { LAMP_TEXELS = 64 };
+
 static void cross(const float a[3], const float b[3], float out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -98,8 +101,7 @@ void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *p, const float extent[3], floa
         plan_sun(b, extent, &suns[i]);
         p->power += b->measure * strength(&suns[i]);
     }
-    // Of many lamps each has fewer rays.
-    uint32_t side = (uint32_t)p->lamp_texels;
+    uint32_t side = LAMP_TEXELS;
     for (uint32_t n = 4; n < num_lamps && side > 16; n *= 4) {
         side /= 2;
     }
@@ -170,11 +172,6 @@ static void record(tyn_recorder *r, const void *params)
 static const tyn_param param_table[] = {
     {"sun_texels", TYN_PARAM_INT, offsetof(tyn_lpv_scatter_params, sun_texels), 256, 16, 1024,
      "texels", "rays along a side of the map of a directional light", NULL},
-    {"lamp_texels", TYN_PARAM_INT, offsetof(tyn_lpv_scatter_params, lamp_texels), 64, 16, 512,
-     "texels",
-     "rays along a side of each of a point light's six maps, or of a spot's one; less for more "
-     "than four lamps",
-     NULL},
     {"samples", TYN_PARAM_INT, offsetof(tyn_lpv_scatter_params, samples), 8, 1, 64, "",
      "places on a ray where light scatters", NULL},
 };

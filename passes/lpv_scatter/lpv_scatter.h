@@ -11,9 +11,8 @@
 
 typedef struct tyn_lpv_scatter_params {
     tyn_lattice_shape shape;
-    int32_t sun_texels;  // "lpv_scatter.sun_texels"
-    int32_t lamp_texels; // "lpv_scatter.lamp_texels"
-    int32_t samples;     // "lpv_scatter.samples", 1..64
+    int32_t sun_texels; // "lpv_scatter.sun_texels"
+    int32_t samples;    // "lpv_scatter.samples", 1..64
     // For the method, by tyn_lpv_scatter_plan:
     uint32_t mode; // TYN_MEDIUM_*
     uint32_t num_suns, num_bundles;

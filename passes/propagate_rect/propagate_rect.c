@@ -77,10 +77,6 @@ static const tyn_param params[] = {
     {"rate", TYN_PARAM_ENUM, FIELD(rate), TYN_PROPAGATE_RATE_PAPER, 0, 1, "",
      "how a hop lowers the mean cosine: paper is g^(sigma_s t), exact is exp(-(1 - g) sigma_s t)",
      (const char *const[]){"paper", "exact"}},
-    {"source", TYN_PARAM_ENUM, FIELD(source), TYN_PROPAGATE_SOURCE_SCATTERED, 0, 1, "",
-     "what a point of the medium sends to the eye: sigma_s L_acc, or L_acc where there is any "
-     "medium",
-     (const char *const[]){"scattered", "accumulated"}},
     {"prefilter", TYN_PARAM_ENUM, FIELD(prefilter), TYN_PROPAGATE_PREFILTER_EXACT, 0, 2, "",
      "mean cosine of an ordinate's light as it enters: 1, (1 - w / N)^beta, or 1 - its part of the "
      "sphere",

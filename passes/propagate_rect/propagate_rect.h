@@ -23,11 +23,10 @@ typedef struct tyn_propagate_rect_params {
     int32_t iterations;  // 1..256
     float threshold; // of the largest irradiance: iterations end where no cell has more; 0 = never
     int32_t init;    // TYN_PROPAGATE_INIT_*
-    uint32_t last_event; // 1: the light is scattered once more towards the eye: hg(mu, g a)
-    int32_t rate;        // TYN_PROPAGATE_RATE_*
-    int32_t source;    // TYN_PROPAGATE_SOURCE_*: for the ray march, no kernel of this pass reads it
-    int32_t prefilter; // TYN_PROPAGATE_PREFILTER_*
-    float beta;        // exponent of the heuristic prefilter
+    uint32_t last_event;    // 1: the light is scattered once more towards the eye: hg(mu, g a)
+    int32_t rate;           // TYN_PROPAGATE_RATE_*
+    int32_t prefilter;      // TYN_PROPAGATE_PREFILTER_*
+    float beta;             // exponent of the heuristic prefilter
     uint32_t num_ordinates; // set by the method, as all below: room for, 1..TYN_ORDINATES_MAX
     uint32_t channels;      // 1 if the medium is the same in all channels, else 3
     uint32_t mode;          // TYN_MEDIUM_*

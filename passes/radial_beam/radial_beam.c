@@ -9,7 +9,7 @@
 #include <string.h>
 
 // With coefficients a node has 48 bytes instead of 4: fine grids are kept to 64 cells, 10 MB per lamp.
-enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64 };
+enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64, FURTHER_CELLS = 32 };
 enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
 
 static const tyn_port ports[] = {RADIAL_BEAM_PORTS(TYN_PORT_ROW)};
@@ -25,10 +25,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 static const tyn_param params_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, cells), 112, 2, MAX_CELLS, "cells",
      "along a side of the strongest lamps' maps of directions (64 at most where coefficients are "
-     "textures); no finer than the medium",
+     "textures; 32 for further lamps); no finer than the medium",
      NULL},
-    {"further_cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, further_cells), 32, 2,
-     MAX_CELLS, "cells", "... of further lamps", NULL},
     {"vpl_cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, vpl_cells), 8, 2, 32, "cells",
      "... of lights that stand for reflections and emission of surfaces", NULL},
 };
@@ -74,7 +72,7 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 
 static struct radial_beam_args layout(const tyn_radial_beam_params *p)
 {
-    const uint32_t cells[RADIAL_CLASSES] = {(uint32_t)p->cells, (uint32_t)p->further_cells,
+    const uint32_t cells[RADIAL_CLASSES] = {(uint32_t)p->cells, FURTHER_CELLS,
                                             (uint32_t)p->vpl_cells};
     const uint32_t counts[RADIAL_CLASSES] = {p->num_fine, p->num_lamps - p->num_fine, p->max_vpls};
     uint32_t most =

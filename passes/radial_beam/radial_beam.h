@@ -6,9 +6,8 @@
 #include "shaders/beams/radial_args.h"
 
 typedef struct tyn_radial_beam_params {
-    int32_t cells;         // "radial_beam.cells"
-    int32_t further_cells; // "radial_beam.further_cells"
-    int32_t vpl_cells;     // "radial_beam.vpl_cells"
+    int32_t cells;     // "radial_beam.cells"
+    int32_t vpl_cells; // "radial_beam.vpl_cells"
     // Set by the method (tyn_radial_beam_plan).
     uint32_t mode; // TYN_MEDIUM_*
     uint32_t num_lamps;

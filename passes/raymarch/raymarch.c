@@ -22,18 +22,18 @@ enum {
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 32 powers of two with this sum are all different.
+// 31 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
-                       RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
-                       RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
-                       RAYMARCH_CLOSED + RAYMARCH_SUPERSAMPLE + RAYMARCH_TRANSMITTANCE +
-                       RAYMARCH_DEPTH + RAYMARCH_SINGLE + RAYMARCH_MULTIPLE + RAYMARCH_GLOW +
-                       RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN +
-                       RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
+                       RAYMARCH_UNSCALED + RAYMARCH_EMISSION + RAYMARCH_MEAN + RAYMARCH_HOST_DEPTH +
+                       RAYMARCH_BACKGROUND + RAYMARCH_BEHIND + RAYMARCH_CLOSED +
+                       RAYMARCH_SUPERSAMPLE + RAYMARCH_TRANSMITTANCE + RAYMARCH_DEPTH +
+                       RAYMARCH_SINGLE + RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS +
+                       RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS +
+                       RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
                        RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE +
                        RAYMARCH_NOISE + RAYMARCH_TABLED ==
-                   UINT32_MAX,
+                   UINT32_MAX >> 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -212,7 +212,6 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= tyn_rec_extent(r, RAYMARCH_PORT_LUT).x > TYN_LUT_DEPTHS ? RAYMARCH_SOFT_SUNS : 0;
     features |= field ? RAYMARCH_FIELD : 0;
     features |= p->field != TYN_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
-    features |= p->field == TYN_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
     features |= glow ? RAYMARCH_GLOW : 0;
     features |= p->emissive ? RAYMARCH_EMISSION : 0;
     features |= p->mean ? RAYMARCH_MEAN : 0;

@@ -289,17 +289,13 @@ march_step march_through(march_medium m, float ds, bool is, march_line line, vec
                             vec3(textureSize(inscatter_tex, 0)));
         }
         vec3 J = march_tinted(march_field(p, uvw));
-        spectrum per_metre = m.scaled_scattering;
-        if (raymarch_has(RAYMARCH_SOURCE)) {
-            per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
-        }
-        vec3 light = (per_metre * step.weight_scaled) * J;
+        vec3 light = (m.scaled_scattering * step.weight_scaled) * J;
         if (raymarch_has(RAYMARCH_WALLS)) {
             bool near = is && march_near_walls(p);
             waiting.last_wall = near ? waiting.walls : is ? -1 : waiting.last_wall;
             if (near) {
                 waiting.wall_at[waiting.walls] = there;
-                waiting.wall_weight[waiting.walls] = per_metre * step.weight_scaled;
+                waiting.wall_weight[waiting.walls] = m.scaled_scattering * step.weight_scaled;
                 waiting.walls++;
             }
             light = near ? vec3(0.0) : light;

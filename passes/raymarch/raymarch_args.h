@@ -8,7 +8,7 @@
 #define RAYMARCH_FIELD (1u << 1)   // light of the texture inscatter
 #define RAYMARCH_ONE_CHANNEL (1u << 2) // inscatter has one channel
 #define RAYMARCH_UNSCALED (1u << 3)    // no delta scaling: tau' is tau
-#define RAYMARCH_SOURCE (1u << 4) // inscatter is what a metre of any medium sends, not per sigma_s
+#define RAYMARCH_TABLED (1u << 4)      // some phase functions are tables
 #define RAYMARCH_EMISSION (1u << 5)
 #define RAYMARCH_MEAN (1u << 6) // the mean of the environment came in through the field
 #define RAYMARCH_HOST_DEPTH (1u << 7)
@@ -35,7 +35,6 @@
 #define RAYMARCH_LIGHT_CELLS (1u << 28)   // it is known where lights see all, or nothing
 #define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid
 #define RAYMARCH_NOISE (1u << 30)  // places at which medium and light are looked up are moved
-#define RAYMARCH_TABLED (1u << 31) // some phase functions are tables
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -43,10 +43,6 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 };
 
 static const tyn_param params_table[] = {
-    {"sun_texels", TYN_PARAM_INT, offsetof(tyn_rsm_params, sun_texels), 256, 16, 1024, "texels",
-     "side of the map of a directional light; rounded to a power of two", NULL},
-    {"lamp_texels", TYN_PARAM_INT, offsetof(tyn_rsm_params, lamp_texels), 64, 16, 512, "texels",
-     "side of each of a point light's six maps; less for more than four lamps", NULL},
     {"sky_texels", TYN_PARAM_INT, offsetof(tyn_rsm_params, sky_texels), 64, 0, 256, "texels",
      "side of the map of places that stand for all surfaces under the sky; rounded to a power of "
      "two, 0: its light is not reflected onto other surfaces",

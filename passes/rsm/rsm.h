@@ -9,9 +9,7 @@
 #include "shaders/surfaces/surface_args.h"
 
 typedef struct tyn_rsm_params {
-    int32_t sun_texels;  // "rsm.sun_texels"
-    int32_t lamp_texels; // "rsm.lamp_texels"
-    int32_t sky_texels;  // "rsm.sky_texels"
+    int32_t sky_texels; // "rsm.sky_texels"
     // Set by the method:
     uint32_t size[2]; // of the atlas, texels
     uint32_t num_triangles;

@@ -15,8 +15,6 @@
 #define TYN_PROPAGATE_INIT_FIRST_COLLISION 3 // every cell, what scatters there for the first time
 #define TYN_PROPAGATE_RATE_PAPER 0           // a' = a g^(sigma_s t)
 #define TYN_PROPAGATE_RATE_EXACT 1           // a' = a exp(-(1 - g) sigma_s t)
-#define TYN_PROPAGATE_SOURCE_SCATTERED 0     // source = sigma_s L_acc
-#define TYN_PROPAGATE_SOURCE_ACCUMULATED 1   // source = L_acc
 #define TYN_PROPAGATE_PREFILTER_OFF 0        // an ordinate's light starts as a beam: a = 1
 #define TYN_PROPAGATE_PREFILTER_HEURISTIC 1 // a = (1 - w / N)^beta, w = share of the sphere times N
 #define TYN_PROPAGATE_PREFILTER_EXACT 2     // a = mean cosine of the ordinate's region

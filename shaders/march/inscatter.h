@@ -4,6 +4,5 @@
 enum {
     TYN_INSCATTER_SCALED =
         0, // light per sigma_s' (sources.h: delta scaling); depths of the picture are delta scaled
-    TYN_INSCATTER_PLAIN,  // light per sigma_s; nothing is scaled
-    TYN_INSCATTER_SOURCE, // light per metre of any medium; nothing is scaled
+    TYN_INSCATTER_PLAIN, // light per sigma_s; nothing is scaled
 };

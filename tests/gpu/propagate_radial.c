@@ -220,6 +220,31 @@ static void maps(void **state)
     }
 }
 
+// A light that stands for a disc starts with its mean cosine to the power of beta, and without the prefilter as a beam.
+static void prefilters(void **state)
+{
+    static const struct {
+        uint32_t prefilter;
+        float beta;
+        double power;
+    } cases[] = {{0, 1, 0}, {1, 1, 1}, {1, 3, 3}, {1, 0.5f, 0.5}};
+    setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
+    s.medium.sigma_s[0] = 1;
+    s.params.max_vpls = s.vpls.count = 1;
+    s.vpls.list[0] = (struct light_block){.position = {0.5f, 0.5f, 0},
+                                          .kind = TYN_LIGHT_KIND_COSINE,
+                                          .direction = {0, 0, 1},
+                                          .radius = 0.5f,
+                                          .color = {1, 1, 1}};
+    const double r = 0.5 * sqrt(0.25 + 0.25 + 1), mean = 0.5 + 0.5 * r / sqrt(r * r + 0.25);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        s.params.prefilter = cases[i].prefilter;
+        s.params.beta = cases[i].beta;
+        const outcome o = run(*state, &s);
+        assert_near(o.grids[0].mean_cosine, pow(mean, cases[i].power), 1e-5);
+    }
+}
+
 // Folded neighbours are neighbours on the sphere too: no farther than the widest cell.
 static void folds(void **state)
 {
@@ -612,10 +637,15 @@ static void stress(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps),        cmocka_unit_test(folds),
-        cmocka_unit_test(equals_twin), cmocka_unit_test(surfaces_stop_light),
-        cmocka_unit_test(keeps_power), cmocka_unit_test(stays_symmetric),
-        cmocka_unit_test(batches),     cmocka_unit_test(stress),
+        cmocka_unit_test(maps),
+        cmocka_unit_test(prefilters),
+        cmocka_unit_test(folds),
+        cmocka_unit_test(equals_twin),
+        cmocka_unit_test(surfaces_stop_light),
+        cmocka_unit_test(keeps_power),
+        cmocka_unit_test(stays_symmetric),
+        cmocka_unit_test(batches),
+        cmocka_unit_test(stress),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
