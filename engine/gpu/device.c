@@ -1,6 +1,7 @@
 // device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
 #include "gpu/compiler.h"
 #include "base/given.h"
+#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,44 +82,6 @@ static bool separates_stencil(const VkPhysicalDeviceFeatures2 *enabled)
     const VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures *own = find_in_chain(
         enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES);
     return (v12 && v12->separateDepthStencilLayouts) || (own && own->separateDepthStencilLayouts);
-}
-
-// ---- small helpers ----------------------------------------------------------------------------
-
-tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what)
-{
-    if (result == VK_SUCCESS) {
-        return TYN_OK;
-    }
-    bool memory = result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
-    tyn_log_print(&dev->log, TYN_LOG_ERROR, "%s failed with VkResult %d%s", what, (int)result,
-                  memory                           ? " (out of memory)"
-                  : result == VK_ERROR_DEVICE_LOST ? " (device lost)"
-                                                   : "");
-    return memory ? TYN_ERR_MEMORY : TYN_ERR_DEVICE;
-}
-
-VkResult tyn_vk_made(VkResult result, void *handle, size_t size)
-{
-    if (result != VK_SUCCESS) {
-        memset(handle, 0, size);
-    }
-    return result;
-}
-
-void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
-                            const char *name)
-{
-    if (!handle || !dev->debug_names || !dev->vk.SetDebugUtilsObjectNameEXT || !name) {
-        return;
-    }
-    dev->vk.SetDebugUtilsObjectNameEXT(
-        dev->device, &(VkDebugUtilsObjectNameInfoEXT){
-                         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-                         .objectType = type,
-                         .objectHandle = handle,
-                         .pObjectName = name,
-                     });
 }
 
 const char *tyn_device_name(const tyn_device *dev)
@@ -293,6 +256,45 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
         }
     }
     return tyn_pipeline_cache_create(dev, pipelines->cache, pipelines->cache_size);
+}
+
+void tyn_device_destroy(tyn_device **device)
+{
+    tyn_device *dev = device ? *device : NULL;
+    if (!dev) {
+        return;
+    }
+    *device = NULL;
+    const bool own = dev->own;
+    tyn_compiler_destroy(&dev->compiler);
+    if (dev->device && dev->vk.DestroyDevice) {
+        if (own && dev->vk.DeviceWaitIdle) {
+            dev->vk.DeviceWaitIdle(dev->device);
+        }
+        if (dev->vk.DestroyPipelineCache) {
+            tyn_pipelines_destroy(dev);
+            dev->vk.DestroyPipelineCache(dev->device, dev->cache, NULL);
+            dev->vk.DestroySampler(dev->device, dev->clamp, NULL);
+            dev->vk.DestroySampler(dev->device, dev->repeat_x, NULL);
+            dev->vk.DestroySampler(dev->device, dev->nearest, NULL);
+        }
+        if (own) {
+            dev->vk.DestroyDevice(dev->device, NULL);
+        }
+    }
+    if (own && dev->instance) {
+        if (dev->messenger) {
+            PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+                (PFN_vkDestroyDebugUtilsMessengerEXT)dev->get_instance_proc_addr(
+                    dev->instance, "vkDestroyDebugUtilsMessengerEXT");
+            destroy(dev->instance, dev->messenger, NULL);
+        }
+        dev->vk.DestroyInstance(dev->instance, NULL);
+    }
+    if (dev->loader) {
+        dlclose(dev->loader);
+    }
+    free(dev);
 }
 
 tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)

@@ -363,45 +363,6 @@ tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **ou
     return result;
 }
 
-void tyn_device_destroy(tyn_device **device)
-{
-    tyn_device *dev = device ? *device : NULL;
-    if (!dev) {
-        return;
-    }
-    *device = NULL;
-    const bool own = dev->own;
-    tyn_compiler_destroy(&dev->compiler);
-    if (dev->device && dev->vk.DestroyDevice) {
-        if (own && dev->vk.DeviceWaitIdle) {
-            dev->vk.DeviceWaitIdle(dev->device);
-        }
-        if (dev->vk.DestroyPipelineCache) {
-            tyn_pipelines_destroy(dev);
-            dev->vk.DestroyPipelineCache(dev->device, dev->cache, NULL);
-            dev->vk.DestroySampler(dev->device, dev->clamp, NULL);
-            dev->vk.DestroySampler(dev->device, dev->repeat_x, NULL);
-            dev->vk.DestroySampler(dev->device, dev->nearest, NULL);
-        }
-        if (own) {
-            dev->vk.DestroyDevice(dev->device, NULL);
-        }
-    }
-    if (own && dev->instance) {
-        if (dev->messenger) {
-            PFN_vkDestroyDebugUtilsMessengerEXT destroy =
-                (PFN_vkDestroyDebugUtilsMessengerEXT)dev->get_instance_proc_addr(
-                    dev->instance, "vkDestroyDebugUtilsMessengerEXT");
-            destroy(dev->instance, dev->messenger, NULL);
-        }
-        dev->vk.DestroyInstance(dev->instance, NULL);
-    }
-    if (dev->loader) {
-        dlclose(dev->loader);
-    }
-    free(dev);
-}
-
 // ---- listing ----------------------------------------------------------------------------------
 
 static const char *type_name(VkPhysicalDeviceType type)

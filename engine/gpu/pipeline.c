@@ -112,7 +112,7 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
         if (tests[i].over) {
             tyn_log_print(&dev->log, TYN_LOG_ERROR,
                           "kernel '%s' of pass '%s' needs %u %s; the device '%s' has %u", k->name,
-                          pass->name, tests[i].wanted, tests[i].what, tyn_device_name(dev),
+                          pass->name, tests[i].wanted, tests[i].what, dev->properties.deviceName,
                           tests[i].limit);
             return TYN_ERR_UNSUPPORTED;
         }
