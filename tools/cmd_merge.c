@@ -1,5 +1,6 @@
 // cmd_merge.c -- `tyndall merge`: pictures of one thing by other samples, as one.
 #include "app.h"
+#include "layers.h"
 #include "resume.h"
 #include "tags.h"
 #include <math.h>
@@ -82,10 +83,15 @@ static int check_pair(app *a, const part *p, const part *q)
     return EXIT_DONE;
 }
 
+static bool is_kind(const char *channel, layer_kind kind)
+{
+    const picture_layer *layer = layer_of_channel(channel);
+    return layer && layer->kind == kind;
+}
+
 static bool is_kept(const char *name)
 {
-    return strncmp(name, RESUME_LOW ".", strlen(RESUME_LOW ".")) == 0 ||
-           strncmp(name, RESUME_DEVIATION ".", strlen(RESUME_DEVIATION ".")) == 0;
+    return is_kind(name, LAYER_KEPT);
 }
 
 // Sums may be missing in some: then they are left out.
@@ -126,17 +132,17 @@ static int check_all(app *a, const part *parts, uint32_t count)
 
 // ---- merging ----------------------------------------------------------------------------------
 
-static float *plane_of(const part *p, const char *layer, char colour)
+static float *plane_of(const part *p, tyn_output output, size_t channel)
 {
     char name[48];
-    snprintf(name, sizeof name, "%s%s%c", layer, layer[0] ? "." : "", colour);
+    layer_channel_name(layer_of_output(output), channel, name);
     return tyn_image_file_channel(&p->file, name);
 }
 
 static bool has_sums(const part *p)
 {
-    for (int c = 0; c < 4; c++) {
-        if (!plane_of(p, RESUME_LOW, "RGBA"[c]) || !plane_of(p, RESUME_DEVIATION, "RGBA"[c])) {
+    for (size_t c = 0; c < 4; c++) {
+        if (!plane_of(p, TYN_OUTPUT_LOW, c) || !plane_of(p, TYN_OUTPUT_DEVIATION, c)) {
             return false;
         }
     }
@@ -181,15 +187,16 @@ static merged merge_pixel(const colour_planes *parts, uint32_t count, size_t i)
 }
 
 // A colour, its error and sums, into the first part's planes. False: no memory.
-static bool merge_colour(const part *parts, uint32_t count, char colour, bool sums)
+static bool merge_colour(const part *parts, uint32_t count, size_t colour, bool sums)
 {
     const size_t pixels = (size_t)parts[0].file.width * parts[0].file.height;
     colour_planes *planes = calloc(count, sizeof *planes);
     for (uint32_t k = 0; planes && k < count; k++) {
-        planes[k] = (colour_planes){
-            plane_of(&parts[k], "", colour), plane_of(&parts[k], "error", colour),
-            sums ? plane_of(&parts[k], RESUME_LOW, colour) : NULL,
-            sums ? plane_of(&parts[k], RESUME_DEVIATION, colour) : NULL, parts[k].samples};
+        planes[k] = (colour_planes){plane_of(&parts[k], TYN_OUTPUT_RADIANCE, colour),
+                                    plane_of(&parts[k], TYN_OUTPUT_ERROR, colour),
+                                    sums ? plane_of(&parts[k], TYN_OUTPUT_LOW, colour) : NULL,
+                                    sums ? plane_of(&parts[k], TYN_OUTPUT_DEVIATION, colour) : NULL,
+                                    parts[k].samples};
     }
     for (size_t i = 0; planes && planes->mean && i < pixels; i++) {
         const merged m = merge_pixel(planes, count, i);
@@ -224,13 +231,7 @@ static void merge_plane(const part *parts, uint32_t count, const char *name)
 // Means over samples, which have no error of their own.
 static bool is_mean(const char *name)
 {
-    static const char *const layers[] = {"single.", "multiple.", "transmittance."};
-    for (size_t i = 0; i < ARRAY_SIZE(layers); i++) {
-        if (strncmp(name, layers[i], strlen(layers[i])) == 0) {
-            return true;
-        }
-    }
-    return strcmp(name, "A") == 0;
+    return is_kind(name, LAYER_SUM) || strcmp(name, "A") == 0;
 }
 
 static void drop_sums(tyn_image_file *file)
@@ -257,8 +258,8 @@ static bool merge_all(part *parts, uint32_t count)
         sums = sums && has_sums(&parts[k]);
         num_ranges += parts[k].num_ranges;
     }
-    for (int c = 0; c < 3; c++) {
-        if (!merge_colour(parts, count, "RGB"[c], sums)) {
+    for (size_t c = 0; c < 3; c++) {
+        if (!merge_colour(parts, count, c, sums)) {
             return false;
         }
     }
@@ -269,16 +270,17 @@ static bool merge_all(part *parts, uint32_t count)
     }
     if (sums) {
         const size_t pixels = (size_t)file->width * file->height;
-        merge_plane(parts, count, RESUME_DEVIATION ".A");
-        memset(tyn_image_file_channel(file, RESUME_LOW ".A"), 0, pixels * sizeof(float));
+        char mean_alpha[48];
+        layer_channel_name(layer_of_output(TYN_OUTPUT_DEVIATION), 3, mean_alpha);
+        merge_plane(parts, count, mean_alpha);
+        memset(plane_of(&parts[0], TYN_OUTPUT_LOW, 3), 0, pixels * sizeof(float));
     } else {
         drop_sums(file);
     }
     for (uint32_t i = 0; i < file->num_channels; i++) {
         const char *name = file->channels[i].name;
-        const bool colour = strlen(name) == 1 || is_mean(name);
-        file->channels[i].exact =
-            is_kept(name) || strncmp(name, "depth", 5) == 0 || (sums && colour);
+        const bool sum = is_kind(name, LAYER_COLOR) || is_kind(name, LAYER_SUM);
+        file->channels[i].exact = is_kept(name) || is_kind(name, LAYER_EXACT) || (sums && sum);
     }
     sample_range *all = calloc(num_ranges, sizeof *all);
     num_ranges = 0;

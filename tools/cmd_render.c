@@ -1,5 +1,6 @@
 // cmd_render.c -- `tyndall render`: a scene to pictures and stats.
 #include "app.h"
+#include "layers.h"
 #include "choice_setup.h"
 #include "crop.h"
 #include "exposure.h"
@@ -616,7 +617,7 @@ static const option output_table[] = {
     {'o', "output", OPT_LIST, AT(outputs), "FILE",
      ".exr or .png, repeatable; else the scene's name with .png", .file = OPT_WRITES},
     {0, "aov", OPT_TEXT, AT(aov), "LIST",
-     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error,albedo,normal; with "
+     "layers of the .exr, with commas between them:" LAYER_AOV_NAMES "; with "
      "depth, depth_t50, single or multiple every pixel is marched, none upsampled: the picture "
      "changes by up to 1 %"},
     {0, "crop", OPT_TEXT, AT(crop), "X,Y,WxH",

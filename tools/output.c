@@ -1,62 +1,13 @@
 // output.c -- the pictures a frame gives: EXR layers and display-ready PNG.
 #include "output.h"
-#include "resume.h"
+#include "layers.h"
 #include "sequence.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tyndall/io.h>
 
-// A layer is some components of an output image.
-typedef struct layer {
-    const char *name;
-    tyn_output output;
-    uint32_t num_channels;
-    struct {
-        const char *name;
-        uint32_t component;
-    } channels[4];
-    enum {
-        ROUNDED, // stored as halves, unless more is asked for
-        SUM,     // ... as a mean that is gone on with may not be
-        EXACT,   // 32-bit floats always
-        KEPT,    // 32-bit floats, of pictures that are gone on with; not for --aov
-    } precision;
-} layer;
-
-static const layer layers[] = {
-    {"color", TYN_OUTPUT_RADIANCE, 4, {{"R", 0}, {"G", 1}, {"B", 2}, {"A", 3}}, SUM},
-    {"transmittance",
-     TYN_OUTPUT_TRANSMITTANCE,
-     3,
-     {{"transmittance.R", 0}, {"transmittance.G", 1}, {"transmittance.B", 2}},
-     SUM},
-    {"depth", TYN_OUTPUT_DEPTH, 1, {{"depth.Z", 0}}, EXACT},
-    {"depth_t50", TYN_OUTPUT_DEPTH, 1, {{"depth_t50.Z", 1}}, EXACT},
-    {"single", TYN_OUTPUT_SINGLE, 3, {{"single.R", 0}, {"single.G", 1}, {"single.B", 2}}, SUM},
-    {"multiple",
-     TYN_OUTPUT_MULTIPLE,
-     3,
-     {{"multiple.R", 0}, {"multiple.G", 1}, {"multiple.B", 2}},
-     SUM},
-    {"error", TYN_OUTPUT_ERROR, 3, {{"error.R", 0}, {"error.G", 1}, {"error.B", 2}}, ROUNDED},
-    {"albedo", TYN_OUTPUT_ALBEDO, 3, {{"albedo.R", 0}, {"albedo.G", 1}, {"albedo.B", 2}}, ROUNDED},
-    {"normal", TYN_OUTPUT_NORMAL, 3, {{"normal.X", 0}, {"normal.Y", 1}, {"normal.Z", 2}}, ROUNDED},
-    {"low",
-     TYN_OUTPUT_LOW,
-     4,
-     {{RESUME_LOW ".R", 0}, {RESUME_LOW ".G", 1}, {RESUME_LOW ".B", 2}, {RESUME_LOW ".A", 3}},
-     KEPT},
-    {"deviation",
-     TYN_OUTPUT_DEVIATION,
-     4,
-     {{RESUME_DEVIATION ".R", 0},
-      {RESUME_DEVIATION ".G", 1},
-      {RESUME_DEVIATION ".B", 2},
-      {RESUME_DEVIATION ".A", 3}},
-     KEPT},
-};
-enum { COLOR_LAYER = 0, MAX_CHANNELS = 32 };
+enum { COLOR_LAYER = 0, MAX_CHANNELS = 4 * NUM_PICTURE_LAYERS };
 
 // ---- planning ---------------------------------------------------------------------------------
 
@@ -64,10 +15,10 @@ static void list_layers(uint32_t outputs, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = '\0';
-    for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers) && used < size; i++) {
-        if (layers[i].output & outputs && layers[i].precision != KEPT) {
+    for (uint32_t i = COLOR_LAYER + 1; i < NUM_PICTURE_LAYERS && used < size; i++) {
+        if (picture_layers[i].output & outputs && picture_layers[i].kind != LAYER_KEPT) {
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
-                                     layers[i].name);
+                                     picture_layers[i].name);
         }
     }
 }
@@ -76,19 +27,19 @@ static bool add_layer(app *a, const tyn_method_info *info, const char *name, siz
                       output_plan *plan)
 {
     char known[256];
-    for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers); i++) {
-        if (layers[i].precision == KEPT || strlen(layers[i].name) != length ||
-            strncmp(layers[i].name, name, length) != 0) {
+    for (uint32_t i = COLOR_LAYER + 1; i < NUM_PICTURE_LAYERS; i++) {
+        if (picture_layers[i].kind == LAYER_KEPT || strlen(picture_layers[i].name) != length ||
+            strncmp(picture_layers[i].name, name, length) != 0) {
             continue;
         }
-        if (!(info->outputs & layers[i].output)) {
+        if (!(info->outputs & picture_layers[i].output)) {
             list_layers(info->outputs, known, sizeof known);
             app_error(a, "--aov: method '%s' does not make the layer '%s'; it makes: %s",
-                      info->name, layers[i].name, known[0] ? known : "none");
+                      info->name, picture_layers[i].name, known[0] ? known : "none");
             return false;
         }
         plan->layers |= 1u << i;
-        plan->outputs |= layers[i].output;
+        plan->outputs |= picture_layers[i].output;
         return true;
     }
     list_layers(UINT32_MAX, known, sizeof known);
@@ -165,24 +116,26 @@ static int write_exr(app *a, const output_plan *plan, tyn_offline *offline,
         app_error(a, "out of memory");
         return EXIT_FAILED;
     }
-    for (uint32_t i = 0; i < ARRAY_SIZE(layers); i++) {
+    for (uint32_t i = 0; i < NUM_PICTURE_LAYERS; i++) {
         const float *pixels = NULL;
-        const bool kept = layers[i].precision == KEPT && sums && plan->outputs & layers[i].output;
+        const bool kept = picture_layers[i].kind == LAYER_KEPT && sums &&
+                          plan->outputs & picture_layers[i].output;
         if (plan->layers & 1u << i || kept) {
-            pixels = tyn_offline_output(offline, layers[i].output);
+            pixels = tyn_offline_output(offline, picture_layers[i].output);
             if (!pixels) {
-                app_error(a, "the method gave no layer '%s'", layers[i].name);
+                app_error(a, "the method gave no layer '%s'", picture_layers[i].name);
                 free(planes);
                 return EXIT_FAILED;
             }
         }
-        for (uint32_t c = 0; pixels && c < layers[i].num_channels; c++) {
+        for (uint32_t c = 0; pixels && picture_layers[i].channels[c]; c++) {
             tyn_channel *channel = &channels[image.num_channels];
             channel->data = planes + num * image.num_channels++;
-            snprintf(channel->name, sizeof channel->name, "%s", layers[i].channels[c].name);
-            channel->exact = layers[i].precision >= EXACT || (sums && layers[i].precision == SUM);
+            layer_channel_name(&picture_layers[i], c, channel->name);
+            channel->exact = picture_layers[i].kind >= LAYER_EXACT ||
+                             (sums && picture_layers[i].kind <= LAYER_SUM);
             for (size_t k = 0; k < num; k++) {
-                channel->data[k] = pixels[4 * k + layers[i].channels[c].component];
+                channel->data[k] = pixels[4 * k + picture_layers[i].first + c];
             }
         }
     }

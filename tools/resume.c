@@ -1,26 +1,27 @@
 // resume.c -- a picture that a method samples, taken up again from its .exr.
 #include "resume.h"
+#include "layers.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-// Images of tyn_resume, RGBA, and where their components are in the file; "": 0.
+// Images of tyn_resume, and the outputs whose layers they are in.
 typedef struct image_source {
     size_t at; // of the pointer in tyn_resume
-    const char *layer;
-    bool alpha;
-    uint32_t output; // the layer is needed with it; 0: always
+    tyn_output output;
+    int channels;
+    bool always; // else with its output
 } image_source;
 
 static const image_source images[] = {
-    {offsetof(tyn_resume, radiance), "", false, 0},
-    {offsetof(tyn_resume, low), RESUME_LOW, true, 0},
-    {offsetof(tyn_resume, deviation), RESUME_DEVIATION, true, 0},
-    {offsetof(tyn_resume, single), "single", false, TYN_OUTPUT_SINGLE},
-    {offsetof(tyn_resume, multiple), "multiple", false, TYN_OUTPUT_MULTIPLE},
-    {offsetof(tyn_resume, transmittance), "transmittance", false, TYN_OUTPUT_TRANSMITTANCE},
+    {offsetof(tyn_resume, radiance), TYN_OUTPUT_RADIANCE, 3, true},
+    {offsetof(tyn_resume, low), TYN_OUTPUT_LOW, 4, true},
+    {offsetof(tyn_resume, deviation), TYN_OUTPUT_DEVIATION, 4, true},
+    {offsetof(tyn_resume, single), TYN_OUTPUT_SINGLE, 3, false},
+    {offsetof(tyn_resume, multiple), TYN_OUTPUT_MULTIPLE, 3, false},
+    {offsetof(tyn_resume, transmittance), TYN_OUTPUT_TRANSMITTANCE, 3, false},
 };
 
 static int wrong(app *a, const char *path, const char *why)
@@ -34,9 +35,9 @@ static int take(app *a, const char *path, const tyn_image_file *file, const imag
                 float *rgba)
 {
     const size_t pixels = (size_t)file->width * file->height;
-    for (int c = 0; c < (from->alpha ? 4 : 3); c++) {
+    for (int c = 0; c < from->channels; c++) {
         char name[48];
-        snprintf(name, sizeof name, "%s%s%c", from->layer, from->layer[0] ? "." : "", "RGBA"[c]);
+        layer_channel_name(layer_of_output(from->output), (size_t)c, name);
         const float *plane = tyn_image_file_channel(file, name);
         if (!plane) {
             app_error(a,
@@ -54,22 +55,28 @@ static int take(app *a, const char *path, const tyn_image_file *file, const imag
 
 int resume_check_sums(app *a, const char *path, const tyn_image_file *file)
 {
+    // True: may not be negative.
     static const struct {
-        const char *layer;
-        bool spread; // may not be negative
-    } layers[] = {
-        {"", false}, {RESUME_LOW ".", false}, {RESUME_DEVIATION ".", true}, {"error.", true}};
+        tyn_output output;
+        bool spread;
+    } checked[] = {{TYN_OUTPUT_RADIANCE, false},
+                   {TYN_OUTPUT_LOW, false},
+                   {TYN_OUTPUT_DEVIATION, true},
+                   {TYN_OUTPUT_ERROR, true}};
     const size_t pixels = (size_t)file->width * file->height;
-    for (size_t k = 0; k < 4 * ARRAY_SIZE(layers); k++) {
-        char name[48];
-        snprintf(name, sizeof name, "%s%c", layers[k / 4].layer, "RGBA"[k % 4]);
-        const float *plane = tyn_image_file_channel(file, name);
-        for (size_t i = 0; plane && i < pixels; i++) {
-            if (!isfinite(plane[i]) || (layers[k / 4].spread && plane[i] < 0)) {
-                app_error(a, "%s: channel %s is %g at pixel %zu, %zu: must be finite%s", path, name,
-                          (double)plane[i], i % file->width, i / file->width,
-                          layers[k / 4].spread ? " and not negative" : "");
-                return EXIT_WRONG;
+    for (size_t k = 0; k < file->num_channels; k++) {
+        const tyn_channel *channel = &file->channels[k];
+        const picture_layer *layer = layer_of_channel(channel->name);
+        for (size_t l = 0; layer && l < ARRAY_SIZE(checked); l++) {
+            const bool spread = checked[l].spread;
+            for (size_t i = 0; layer->output == checked[l].output && i < pixels; i++) {
+                const float x = channel->data[i];
+                if (!isfinite(x) || (spread && x < 0)) {
+                    app_error(a, "%s: channel %s is %g at pixel %zu, %zu: must be finite%s", path,
+                              channel->name, (double)x, i % file->width, i / file->width,
+                              spread ? " and not negative" : "");
+                    return EXIT_WRONG;
+                }
             }
         }
     }
@@ -121,7 +128,7 @@ static int take_images(app *a, const char *path, const tyn_image_file *file, uin
     }
     for (size_t i = 0; i < ARRAY_SIZE(images); i++) {
         float *rgba = r->planes + i * floats;
-        if (images[i].output && !(outputs & images[i].output)) {
+        if (!images[i].always && !(outputs & images[i].output)) {
             continue;
         }
         int code = take(a, path, file, &images[i], rgba);

@@ -3,10 +3,6 @@
 #include "tags.h"
 #include <tyndall/context.h>
 
-// Channels of sums, which a finished picture needs no more.
-#define RESUME_LOW "resume_low"             // .R .G .B .A: TYN_OUTPUT_LOW
-#define RESUME_DEVIATION "resume_deviation" // .R .G .B: TYN_OUTPUT_DEVIATION; .A: mean alpha
-
 // Sums and errors that a damaged file may have: all must be finite, and spreads not negative. One line, and the exit code.
 int resume_check_sums(app *a, const char *path, const tyn_image_file *file);
 

@@ -1,6 +1,7 @@
 // check_images.c -- are the images that the host lends fit?
 #include "frame/context.h"
 #include "base/fault.h"
+#include "job/output.h"
 #include "gpu/device.h"
 #include <stdio.h>
 
@@ -70,41 +71,28 @@ static tyn_result check_depth(const tyn_device *dev, const tyn_frame *frame)
 static tyn_result check_results(const tyn_device *dev, const tyn_frame *frame, uint32_t outputs)
 {
     const tyn_log *log = &dev->log;
-    const tyn_frame_images *to = &frame->images;
-    const struct {
-        const tyn_image *image;
-        const char *what, *output, *formats;
-        tyn_output needs;
-        VkFormat other;
-    } results[] = {
-        {to->radiance, "images.radiance", "RADIANCE", "rgba16f or rgba32f", TYN_OUTPUT_RADIANCE,
-         VK_FORMAT_R16G16B16A16_SFLOAT},
-        {to->transmittance, "images.transmittance", "TRANSMITTANCE", "rgba16f or rgba32f",
-         TYN_OUTPUT_TRANSMITTANCE, VK_FORMAT_R16G16B16A16_SFLOAT},
-        {to->depth, "images.depth", "DEPTH", "r32f or rgba32f", TYN_OUTPUT_DEPTH,
-         VK_FORMAT_R32_SFLOAT},
-    };
-    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++) {
-        const tyn_image *image = results[i].image;
+    for (uint32_t i = 0; i < TYN_NUM_LENT; i++) {
+        const tyn_lent_image *lent = &tyn_lent_images[i];
+        const tyn_image *image = tyn_lent(&frame->images, i);
         if (!image) {
             continue;
         }
-        if (!(outputs & results[i].needs)) {
-            FAULT("%s is given, but tyn_view.outputs has no TYN_OUTPUT_%s", results[i].what,
-                  results[i].output);
+        if (!(outputs & lent->output)) {
+            FAULT("%s is given, but tyn_view.outputs has no TYN_OUTPUT_%s", lent->what,
+                  lent->constant);
         }
-        if (image->format != VK_FORMAT_R32G32B32A32_SFLOAT && image->format != results[i].other) {
-            FAULT("%s: its format is %d; it must be %s", results[i].what, (int)image->format,
-                  results[i].formats);
+        if (image->format != VK_FORMAT_R32G32B32A32_SFLOAT && image->format != lent->other) {
+            FAULT("%s: its format is %d; it must be %s", lent->what, (int)image->format,
+                  lent->formats);
         }
         if (image->extent.width != frame->view->width ||
             image->extent.height != frame->view->height) {
-            FAULT("%s is %u x %u, the view is %u x %u; make them equal", results[i].what,
+            FAULT("%s is %u x %u, the view is %u x %u; make them equal", lent->what,
                   image->extent.width, image->extent.height, frame->view->width,
                   frame->view->height);
         }
-        const tyn_result result = check_image(
-            dev, image, results[i].what, VK_IMAGE_USAGE_STORAGE_BIT, "VK_IMAGE_USAGE_STORAGE_BIT");
+        const tyn_result result = check_image(dev, image, lent->what, VK_IMAGE_USAGE_STORAGE_BIT,
+                                              "VK_IMAGE_USAGE_STORAGE_BIT");
         if (result != TYN_OK) {
             return result;
         }

@@ -19,8 +19,6 @@ typedef struct shown_part {
     uint32_t corner[2], size[2], rendered[2];
 } shown_part;
 
-enum { NUM_OUTPUTS = 16 }; // bits of tyn_output
-
 struct tyn_offline {
     tyn_device *dev;
     tyn_context *context;
@@ -33,8 +31,8 @@ struct tyn_offline {
     tyn_node_report *nodes;
     uint32_t num_nodes;
     bool progressive;
-    shown_part shown;            // of the last frame's pictures
-    void *pictures[NUM_OUTPUTS]; // parts of them, by the output's bit
+    shown_part shown;                // of the last frame's pictures
+    void *pictures[TYN_NUM_OUTPUTS]; // parts of them, by the output's bit
 };
 
 tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params, tyn_offline **out)
@@ -89,7 +87,7 @@ void tyn_offline_destroy(tyn_offline **offline)
     *offline = NULL;
     tyn_context_destroy(&off->context);
     tyn_submission_destroy(&off->submission);
-    for (uint32_t i = 0; i < NUM_OUTPUTS; i++) {
+    for (uint32_t i = 0; i < TYN_NUM_OUTPUTS; i++) {
         free(off->pictures[i]);
     }
     free(off->nodes);
@@ -225,8 +223,14 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
 // Bytes of a pixel of a picture; 0: the output is none.
 static uint32_t pixel_bytes(tyn_output output)
 {
-    const uint32_t none = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_FLUXES;
-    return output & none ? 0 : output == TYN_OUTPUT_DISPLAY ? 4 : 4 * sizeof(float);
+#define ROW(constant, bit, name, bytes, set)                                                       \
+    case 1 << bit:                                                                                 \
+        return bytes;
+    switch ((int)output) {
+        TYN_OUTPUTS(ROW)
+    }
+#undef ROW
+    return 0;
 }
 
 const void *tyn_offline_output(tyn_offline *off, tyn_output output)

@@ -1,6 +1,7 @@
 // sizes.c -- what of a frame must be as it was prepared: sizes, formats, counts and settings. All else are values.
 #include "frame/context.h"
 #include "base/hash.h"
+#include "job/output.h"
 #include "registry/registry.h"
 
 static uint64_t add_image(uint64_t h, const tyn_image *image)
@@ -69,13 +70,14 @@ static uint64_t add_scene(uint64_t h, const tyn_scene *scene)
 
 uint64_t tyn_frame_sizes(const tyn_context *ctx, const tyn_frame *frame)
 {
-    const tyn_frame_images *to = &frame->images;
     const tyn_frame_lights *light = &frame->light;
-    const tyn_image *images[] = {frame->color, frame->depth, to->radiance, to->transmittance,
-                                 to->depth,    light->red,   light->green, light->blue};
+    const tyn_image *images[] = {frame->color, frame->depth, light->red, light->green, light->blue};
     uint64_t h = add_scene(add_view(TYN_HASH_SEED, frame->view), frame->scene);
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         h = add_image(h, images[i]);
+    }
+    for (uint32_t i = 0; i < TYN_NUM_LENT; i++) {
+        h = add_image(h, tyn_lent(&frame->images, i));
     }
     if (ctx->atlas.host) {
         h = add_image(h, &frame->densities[0]);

@@ -2,6 +2,7 @@
 #include "frame/context.h"
 #include "base/hash.h"
 #include "frame/env_cdf.h"
+#include "job/output.h"
 #include <string.h>
 
 static void fill_atlas(void *user, void *texels)
@@ -153,12 +154,11 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
             refs->depth = tyn_graph_import_image(g, "depth", TYN_IMAGE_2D, frame->depth, 0);
         }
     }
-    const tyn_frame_images *to = &frame->images;
-    const tyn_image *images[3] = {to->radiance, to->transmittance, to->depth};
-    static const char *const names[3] = {"host_radiance", "host_transmittance", "host_depth"};
-    for (int i = 0; i < 3; i++) {
-        if (images[i]) {
-            refs->images[i] = tyn_graph_import_image(g, names[i], TYN_IMAGE_2D, images[i], 0);
+    for (uint32_t i = 0; i < TYN_NUM_LENT; i++) {
+        const tyn_image *lent = tyn_lent(&frame->images, i);
+        if (lent) {
+            refs->images[i] =
+                tyn_graph_import_image(g, tyn_lent_images[i].given, TYN_IMAGE_2D, lent, 0);
         }
     }
     if (frame->view->outputs & TYN_OUTPUT_LIGHT) {

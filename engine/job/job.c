@@ -4,15 +4,16 @@
 #include "passes/export/export.h"
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *tyn_output_name(tyn_output which)
 {
-    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "probe",
-                                        "balance",  "composite",     "fluxes",  "light",
-                                        "low",      "deviation",     "albedo",  "normal"};
-    for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+#define ROW(constant, bit, name, bytes, set) name,
+    static const char *const names[] = {TYN_OUTPUTS(ROW)};
+#undef ROW
+    for (uint32_t i = 0; i < TYN_NUM_OUTPUTS; i++) {
         if (which == (tyn_output)(1u << i)) {
             return names[i];
         }
@@ -20,19 +21,29 @@ const char *tyn_output_name(tyn_output which)
     return "unknown";
 }
 
+#define LENT(constant, field, other, formats)                                                      \
+    {                                                                                              \
+        TYN_OUTPUT_##constant, offsetof(tyn_frame_images, field), #constant, "images." #field,     \
+            "host_" #field, #field "_image", other, formats                                        \
+    }
+const tyn_lent_image tyn_lent_images[TYN_NUM_LENT] = {
+    LENT(RADIANCE, radiance, VK_FORMAT_R16G16B16A16_SFLOAT, "rgba16f or rgba32f"),
+    LENT(TRANSMITTANCE, transmittance, VK_FORMAT_R16G16B16A16_SFLOAT, "rgba16f or rgba32f"),
+    LENT(DEPTH, depth, VK_FORMAT_R32_SFLOAT, "r32f or rgba32f"),
+};
+
+const tyn_image *tyn_lent(const tyn_frame_images *images, uint32_t index)
+{
+    const tyn_image *image;
+    memcpy(&image, (const char *)images + tyn_lent_images[index].at, sizeof image);
+    return image;
+}
+
 // Into the host's image, if it lent one for this.
 static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
 {
-    static const struct {
-        tyn_output output;
-        const char *name;
-    } images[] = {
-        {TYN_OUTPUT_RADIANCE, "radiance_image"},
-        {TYN_OUTPUT_TRANSMITTANCE, "transmittance_image"},
-        {TYN_OUTPUT_DEPTH, "depth_image"},
-    };
-    for (int i = 0; i < 3; i++) {
-        if (which != images[i].output || !job->refs.images[i].resource) {
+    for (uint32_t i = 0; i < TYN_NUM_LENT; i++) {
+        if (which != tyn_lent_images[i].output || !job->refs.images[i].resource) {
             continue;
         }
         const VkFormat format = tyn_graph_format(g, job->refs.images[i]);
@@ -42,7 +53,7 @@ static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, ty
         tyn_ref refs[EXPORT_NUM_PORTS] = {
             [EXPORT_PORT_RESULT] = ref, [EXPORT_PORT_HOST] = job->refs.images[i]};
         tyn_graph_add(g, &tyn_pass_export, &params, refs);
-        tyn_graph_output(g, images[i].name, refs[EXPORT_PORT_HOST], false);
+        tyn_graph_output(g, tyn_lent_images[i].made, refs[EXPORT_PORT_HOST], false);
     }
 }
 

@@ -44,12 +44,12 @@ void offline_frame_check(tyn_offline *off, const tyn_view *view)
         const char *name;
         size_t floats;
     } all[] = {
-        {TYN_OUTPUT_RADIANCE, "radiance", 4 * pixels},
-        {TYN_OUTPUT_TRANSMITTANCE, "transmittance", 4 * pixels},
-        {TYN_OUTPUT_SINGLE, "single", 4 * pixels},
-        {TYN_OUTPUT_MULTIPLE, "multiple", 4 * pixels},
-        {TYN_OUTPUT_ERROR, "error", 4 * pixels},
-        {TYN_OUTPUT_PROBE, "probe", view->num_points * sizeof(tyn_probe_result) / sizeof(float)},
+#define ROW(constant, bit, name, bytes, set)                                                       \
+    {TYN_OUTPUT_##constant, name, bytes == 16 && !(1 << bit & TYN_OUTPUT_DEPTH) ? 4 * pixels : 0},
+        TYN_OUTPUTS(ROW)
+#undef ROW
+            {TYN_OUTPUT_PROBE, "probe",
+             view->num_points * sizeof(tyn_probe_result) / sizeof(float)},
         {TYN_OUTPUT_FLUXES, "fluxes", sizeof(tyn_fluxes) / sizeof(float)},
     };
     const uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;

@@ -92,7 +92,7 @@ check()
         lowest["base.h"] = 0
         lowest["device.h"] = lowest["scene.h"] = lowest["io.h"] = 1
         lowest["pass.h"] = 1 # pipelines are made from its tables
-        lowest["context.h"] = lowest["registry.h"] = lowest["offline.h"] = lowest["light.glsl"] = 4
+        lowest["context.h"] = lowest["outputs.h"] = lowest["registry.h"] = lowest["offline.h"] = lowest["light.glsl"] = 4
         lowest["extend/lattice_shape.h"] = 1
         lowest["extend/graph.h"] = 2
         lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 4
@@ -103,7 +103,7 @@ check()
         lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 9
         tier["base.h"] = 0
         tier["device.h"] = tier["scene.h"] = 1
-        tier["io.h"] = tier["pass.h"] = 2
+        tier["io.h"] = tier["pass.h"] = tier["outputs.h"] = 2
         tier["context.h"] = 3
         tier["registry.h"] = 4
         tier["offline.h"] = 5

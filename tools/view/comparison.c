@@ -101,7 +101,7 @@ rendering_state comparison_begin(viewer *v, const tyn_view *view)
 {
     comparison *c = &v->comparison;
     tyn_view asked = *view;
-    const tyn_output layer = view_layers[v->layer].output;
+    const tyn_output layer = picture_layers[v->layer].output;
     asked.num_points = 0;
     asked.points = NULL;
     if (!open_reference(v)) {

@@ -31,13 +31,13 @@ static void method_controls(viewer *v)
 
 static void picture_controls(viewer *v)
 {
-    const char *names[VIEW_NUM_LAYERS];
-    uint32_t layers[VIEW_NUM_LAYERS];
+    const char *names[NUM_PICTURE_LAYERS];
+    uint32_t layers[NUM_PICTURE_LAYERS];
     int count = 0, chosen = 0;
-    for (uint32_t i = 0; i < VIEW_NUM_LAYERS; i++) {
-        if (view_layers[i].output & v->method.info.outputs) {
+    for (uint32_t i = 0; i < NUM_PICTURE_LAYERS; i++) {
+        if (pictures_has_layer(v, i)) {
             chosen = i == v->layer ? count : chosen;
-            names[count] = view_layers[i].name;
+            names[count] = picture_layers[i].title;
             layers[count++] = i;
         }
     }

@@ -147,7 +147,7 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
         viewer_touch(v);
         break;
     case GLFW_KEY_TAB:
-        viewer_set_layer(v, view_layer_next(v->layer, v->method.info.outputs));
+        viewer_set_layer(v, pictures_next_layer(v));
         break;
     case GLFW_KEY_E:
         comparison_toggle(v);

@@ -12,10 +12,24 @@ static const double sharp_budget_ms = 200;   // of more samples at rest
 
 // ---- showing ----------------------------------------------------------------------------------
 
+bool pictures_has_layer(const viewer *v, uint32_t layer)
+{
+    return picture_layers[layer].title && picture_layers[layer].output & v->method.info.outputs;
+}
+
+uint32_t pictures_next_layer(const viewer *v)
+{
+    uint32_t layer = v->layer;
+    do {
+        layer = (layer + 1) % NUM_PICTURE_LAYERS;
+    } while (layer && !pictures_has_layer(v, layer));
+    return layer;
+}
+
 // The layer's values as they are uploaded: the first channel is what is shown of depths.
 static const float *layer_values(viewer *v, const rendering *r, bool scale, float **copy)
 {
-    const view_layer *layer = &view_layers[v->layer];
+    const picture_layer *layer = &picture_layers[v->layer];
     const bool made = r->method.outputs & layer->output;
     const float *values = rendering_output(r, made ? layer->output : TYN_OUTPUT_RADIANCE);
     if (!made || !values || layer->shows != PICTURE_SHOWS_FIRST) {
@@ -25,7 +39,7 @@ static const float *layer_values(viewer *v, const rendering *r, bool scale, floa
     *copy = malloc(4 * count * sizeof **copy);
     float low = INFINITY, high = 0;
     for (size_t i = 0; *copy && i < count; i++) {
-        const float x = values[4 * i + layer->component];
+        const float x = values[4 * i + layer->first];
         (*copy)[4 * i] = x;
         if (isfinite(x) && x > 0) {
             low = fminf(low, x);
@@ -72,7 +86,7 @@ static tyn_view view_of(const viewer *v, uint32_t divisor)
 {
     tyn_view view = v->view;
     view.camera = v->camera.camera;
-    view.outputs = TYN_OUTPUT_RADIANCE | view_layers[v->layer].output;
+    view.outputs = TYN_OUTPUT_RADIANCE | picture_layers[v->layer].output;
     view.width = (v->view.width + divisor - 1) / divisor;
     view.height = (v->view.height + divisor - 1) / divisor;
     return view;
@@ -393,7 +407,7 @@ void pictures_step(viewer *v)
 
 void pictures_args(const viewer *v, struct picture_args *args)
 {
-    const view_layer *layer = &view_layers[v->layer];
+    const picture_layer *layer = &picture_layers[v->layer];
     *args = (struct picture_args){
         .width = (float)v->surface.extent.width,
         .height = (float)v->surface.extent.height,

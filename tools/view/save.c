@@ -124,8 +124,8 @@ void save_picture(viewer *v)
         if (v->camera.camera.projection == TYN_PERSPECTIVE) {
             printf(" --fov %.9g", v->camera.camera.yfov * 180 / 3.14159265358979323846);
         }
-        if (view_layers[v->layer].aov) { // it may change how pixels are marched
-            printf(" --aov %s", view_layers[v->layer].aov);
+        if (v->layer) { // it may change how pixels are marched
+            printf(" --aov %s", picture_layers[v->layer].name);
         }
         printf("\n");
         fflush(stdout);

@@ -57,7 +57,7 @@ static bool use_method(viewer *v, const method_options *how)
     v->method = made;
     v->how = *how;
     v->note[0] = '\0';
-    if (!(view_layers[v->layer].output & made.info.outputs)) {
+    if (!(picture_layers[v->layer].output & made.info.outputs)) {
         v->layer = 0;
     }
     for (uint32_t i = 0; i < tyn_num_methods(); i++) {

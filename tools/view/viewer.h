@@ -1,10 +1,10 @@
 // viewer.h -- all that the viewer holds, and what its parts ask of each other.
 #pragma once
+#include "layers.h"
 #include "scene_setup.h"
 #include "sequence.h"
 #include "view/camera_control.h"
 #include "view/comparison.h"
-#include "view/layers.h"
 #include "view/picture.h"
 #include "view/probe_point.h"
 #include "view/rebuild.h"
@@ -148,6 +148,9 @@ uint32_t pictures_pending(const viewer *v); // kernels that pictures wait for
 bool pictures_show(viewer *v, const rendering *r, picture_slot slot); // the layer of its last frame
 uint32_t pictures_samples_wanted(const viewer *v);
 void pictures_args(const viewer *v, struct picture_args *args);
+// Does the method make it, and can it be looked at? `layer`: in picture_layers.
+bool pictures_has_layer(const viewer *v, uint32_t layer);
+uint32_t pictures_next_layer(const viewer *v); // of those after the one that is shown
 // The method or the scene is another: what pictures take is not known any more.
 void pictures_forget(viewer *v);
 void pictures_close(viewer *v); // a frame under way goes on, and is closed when it is done

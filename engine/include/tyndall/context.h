@@ -22,6 +22,7 @@
 //      cheap and never waits for the GPU.
 #pragma once
 #include "device.h"
+#include "outputs.h"
 #include "scene.h"
 
 #ifdef __cplusplus
@@ -63,30 +64,6 @@ TYN_API tyn_result tyn_context_set_quality(tyn_context *ctx, tyn_quality quality
 // What is in effect: a number; of switches 0 or 1, of words their place in the list.
 TYN_API tyn_result tyn_context_get(tyn_context *ctx, const char *name, double *value);
 
-// What a frame can give back, as a set.
-typedef enum tyn_output {
-    TYN_OUTPUT_RADIANCE = 1 << 0, // RGBA32F; RGB radiance, A as in docs/scene-format.md, "Output"
-    TYN_OUTPUT_TRANSMITTANCE = 1 << 1, // RGBA32F
-    TYN_OUTPUT_DEPTH = 1 << 2,         // RGBA32F: depth, depth_t50, 0, 0
-    TYN_OUTPUT_SINGLE = 1 << 3,        // RGBA32F
-    TYN_OUTPUT_MULTIPLE = 1 << 4,      // RGBA32F
-    TYN_OUTPUT_ERROR = 1 << 5,         // RGBA32F: standard error of the mean (path)
-    TYN_OUTPUT_DISPLAY = 1 << 6,       // RGBA8: tone mapped, sRGB encoded
-    TYN_OUTPUT_PROBE = 1 << 7,         // buffer of tyn_probe_result, one a point
-    TYN_OUTPUT_BALANCE = 1 << 8,       // buffer: tyn_balance
-    TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
-    TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
-    TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv, photon)
-    // RGBA32F: with RADIANCE all that the samples so far have left, for tyn_resume (path).
-    TYN_OUTPUT_LOW =
-        1 << 12, // what single precision has lost of the mean: radiance and alpha less this
-    TYN_OUTPUT_DEVIATION = 1 << 13, // RGB: sum of squared deviations of the radiance; A: mean alpha
-    // RGBA32F, of the first surfaces, means over the pixel, 0 where there is none: what denoisers read (methods that draw
-    // surfaces).
-    TYN_OUTPUT_ALBEDO = 1 << 14, // RGB 0 to 1; A: share of the pixel that shows a surface
-    TYN_OUTPUT_NORMAL =
-        1 << 15, // XYZ for shading, world, towards the camera; shorter than 1 where they differ
-} tyn_output;
 // "radiance", ... in lower case; of what is none of them "unknown".
 TYN_API const char *tyn_output_name(tyn_output which);
 

@@ -93,13 +93,6 @@ TYN_API void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, 
 TYN_API void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass,
                               tyn_ref ref);
 
-// What surfaces show whatever shines on them: tyn_add_results makes it.
-#define TYN_GUIDE_OUTPUTS (TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL)
-// Outputs that are gathered along the rays of a camera.
-#define TYN_PICTURE_OUTPUTS                                                                        \
-    (TYN_GUIDE_OUTPUTS | TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |       \
-     TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
-
 // A line among the report's warnings.
 TYN_API void tyn_job_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
 // Says that the suns without beams do not light `what`, and how much light that is; nothing if there are none.
