@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tyndall/io.h>
 #include <tyndall/registry.h>
 
 typedef struct info_args {
@@ -222,7 +223,7 @@ static int run_info(app *a, const void *arguments)
 
 #define AT(field) offsetof(info_args, field)
 static const opt_positional positionals[] = {
-    {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", false, AT(scene.scene)},
+    {"SCENE", "a scene or a volume: .gltf, .glb" TYN_VOLUME_ENDINGS, false, AT(scene.scene)},
     {"ENVIRONMENT", "a latitude-longitude map (.exr, .hdr), as --env", false,
      AT(scene.environment)},
 };

@@ -17,7 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 typedef struct render_args {
@@ -310,18 +309,12 @@ static void note_result(app *a, const stats *s, double frame_ms, const opt_list 
              s->method->info.name, s->device, time);
 }
 
-static bool is_volume(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && (strcasecmp(dot, ".nvdb") == 0 || strcasecmp(dot, ".vdb") == 0);
-}
-
 // Gives a picture of a sequence the coefficients and the camera of the first, where they were chosen
 // to suit it.
 static void keep_look(first_look *look, const char *path, tyn_scene *scene, tyn_camera *camera)
 {
     tyn_medium *m = &scene->media[0];
-    const bool volume = is_volume(path);
+    const bool volume = tyn_is_volume(path);
     float seen = 0;
     for (int c = 0; c < 3; c++) {
         seen += volume ? m->sigma_s[c] + m->sigma_a[c] : 1;

@@ -19,13 +19,6 @@ struct info_grids {
     } files[MAX_FILES];
 };
 
-static bool is_volume(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && (strcmp(dot, ".nvdb") == 0 || strcmp(dot, ".vdb") == 0 ||
-                   strcmp(dot, ".NVDB") == 0 || strcmp(dot, ".VDB") == 0);
-}
-
 static void found(void *user, const char *path)
 {
     info_grids *all = user;
@@ -34,7 +27,7 @@ static void found(void *user, const char *path)
             return;
         }
     }
-    if (!is_volume(path) || all->num_files == MAX_FILES || all->failed) {
+    if (!tyn_is_volume(path) || all->num_files == MAX_FILES || all->failed) {
         return;
     }
     tyn_volume_grid *grids;
@@ -69,7 +62,7 @@ void info_grids_free(info_grids *all)
 bool info_grids_wanted(const char *scene, const info_grids *all)
 {
     bool numbers = false;
-    if (!all || all->failed || !is_volume(scene) || !all->num_files) {
+    if (!all || all->failed || !tyn_is_volume(scene) || !all->num_files) {
         return false;
     }
     for (uint32_t i = 0; i < all->files[0].count; i++) {

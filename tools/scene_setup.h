@@ -2,6 +2,7 @@
 #pragma once
 #include "app.h"
 #include <tyndall/context.h>
+#include <tyndall/io.h>
 #include <tyndall/registry.h>
 
 typedef struct scene_options {
@@ -20,7 +21,7 @@ typedef struct scene_options {
 extern const option scene_table[];
 enum { SCENE_TABLE_SIZE = 12 };
 #define SCENE_POSITIONALS(args, member)                                                            \
-    {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", true,                            \
+    {"SCENE", "a scene or a volume: .gltf, .glb" TYN_VOLUME_ENDINGS, true,                         \
      offsetof(args, member.scene)},                                                                \
     {                                                                                              \
         "ENVIRONMENT", "a latitude-longitude map (.exr, .hdr), as --env", false,                   \

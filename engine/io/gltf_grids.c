@@ -88,7 +88,7 @@ static tyn_result load_grid(grids *g, int kind, const json_doc *doc)
     const char *grid = kinds[kind].grid;
     TYN_TRY(tyn_json_string(doc, from, "grid", &grid));
     if (!uri) {
-        return tyn_json_fault(doc, from, "uri is missing: a .nvdb, .vdb or .raw file");
+        return tyn_json_fault(doc, from, "uri is missing: a file, one of .raw" TYN_VOLUME_ENDINGS);
     }
     char *path = tyn_uri_path(doc, uri);
     if (!path) {

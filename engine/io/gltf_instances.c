@@ -1,7 +1,25 @@
 // gltf_instances.c -- EXT_mesh_gpu_instancing: one mesh of a node in many places.
 #include "io/gltf_instances.h"
+#include "scene/matrix.h"
 #include <stdlib.h>
 #include <string.h>
+
+void tyn_gltf_trs(double m[16], const double translation[3], const double q[4],
+                  const double scale[3])
+{
+    double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    double x = q[0], y = q[1], z = q[2], w = q[3], s = 2.0 / n;
+    const double r[9] = {1 - s * (y * y + z * z), s * (x * y + w * z),     s * (x * z - w * y),
+                         s * (x * y - w * z),     1 - s * (x * x + z * z), s * (y * z + w * x),
+                         s * (x * z + w * y),     s * (y * z - w * x),     1 - s * (x * x + y * y)};
+    mat_identity(m);
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < 3; i++) {
+            m[c * 4 + i] = r[c * 3 + i] * scale[c];
+        }
+        m[12 + c] = translation[c];
+    }
+}
 
 // One of the attributes; all must have as many elements.
 static tyn_result read_attribute(gltf_instances *instances, const gltf_data *data,

@@ -9,15 +9,10 @@
 #include "io/volume.h"
 #include "base/given.h"
 
-static bool is_one_of(const char *path, const char *const *extensions)
+static bool is_gltf(const char *path)
 {
     const char *dot = strrchr(path, '.');
-    for (; dot && *extensions; extensions++) {
-        if (strcasecmp(dot, *extensions) == 0) {
-            return true;
-        }
-    }
-    return false;
+    return dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0);
 }
 
 static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *environment,
@@ -69,15 +64,14 @@ static tyn_result load(tyn_scene *scene, const char *path, const char *environme
                       moment->seconds);
         return TYN_ERR_PARAMS;
     }
-    if (is_one_of(path, (const char *const[]){".gltf", ".glb", NULL})) {
+    if (is_gltf(path)) {
         return load_gltf(scene, path, environment, moment, log);
     }
-    if (is_one_of(path, (const char *const[]){".nvdb", ".vdb", NULL})) {
+    if (tyn_is_volume(path)) {
         return load_bare(scene, path, environment, log);
     }
     tyn_log_print(log, TYN_LOG_ERROR,
-                  "%s: unknown kind of scene: must be .gltf, .glb, or a volume (.nvdb, .vdb)",
-                  path);
+                  "%s: unknown kind of scene: must be one of .gltf, .glb" TYN_VOLUME_ENDINGS, path);
     return TYN_ERR_PARAMS;
 }
 

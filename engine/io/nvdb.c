@@ -698,6 +698,18 @@ tyn_result tyn_nvdb_read(tyn_grid_job *job, const void *bytes, size_t size, cons
     return r;
 }
 
+tyn_result tyn_nvdb_read_file(tyn_grid_job *job, const char *path)
+{
+    void *bytes;
+    size_t size;
+    tyn_result r = tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &size, job->log);
+    if (!r) {
+        r = tyn_nvdb_read(job, bytes, size, path);
+        free(bytes);
+    }
+    return r;
+}
+
 tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
                           const char *file, uint64_t *clamped_negative, const tyn_log *log)
 {

@@ -238,7 +238,7 @@ tyn_result load(tyn_grid_job *job, const char *path)
 
 } // namespace
 
-tyn_result tyn_vdb_read(tyn_grid_job *job, const char *path)
+tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
 {
     tyn_result r = TYN_ERR_PARAMS;
     std::memset(&job->volume, 0, sizeof job->volume);
@@ -272,7 +272,7 @@ tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
     tyn_grid_job job = {};
     job.grid = grid;
     job.log = log;
-    const tyn_result r = tyn_vdb_read(&job, path);
+    const tyn_result r = tyn_vdb_read_file(&job, path);
     *volume = job.volume;
     *clamped_negative += job.clamped;
     return r;

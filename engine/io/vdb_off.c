@@ -1,7 +1,7 @@
 // vdb_off.c -- stands in for vdb.cpp in builds without OpenVDB.
 #include "io/vdb.h"
 
-tyn_result tyn_vdb_read(tyn_grid_job *job, const char *path)
+tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
 {
     tyn_log_print(job->log, TYN_LOG_ERROR,
                   "%s: this build cannot read .vdb files: build with -Dopenvdb=enabled (needs "
@@ -15,5 +15,5 @@ tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
 {
     (void)volume, (void)clamped_negative;
     tyn_grid_job job = {.grid = grid, .log = log};
-    return tyn_vdb_read(&job, path);
+    return tyn_vdb_read_file(&job, path);
 }

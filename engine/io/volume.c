@@ -1,14 +1,10 @@
-// volume.c -- density grids: what all readers share, and the choice of reader by file extension.
+// volume.c -- grids: what all readers share.
 #include "io/volume.h"
-#include "base/given.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include "base/hash.h"
-#include "io/nvdb.h"
-#include "io/vdb.h"
 #include "scene/matrix.h"
 
 void tyn_volume_finish(tyn_volume *volume)
@@ -100,50 +96,21 @@ tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid)
     return TYN_OK;
 }
 
-static bool has_extension(const char *path, const char *extension)
+void tyn_volume_grid_place(tyn_volume_grid *g)
 {
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, extension) == 0;
-}
-
-tyn_result tyn_grid_read(tyn_grid_job *job, const char *path)
-{
-    if (has_extension(path, ".nvdb")) {
-        void *bytes;
-        size_t size;
-        tyn_result r = tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &size, job->log);
-        if (!r) {
-            r = tyn_nvdb_read(job, bytes, size, path);
-            free(bytes);
+    const double *m = g->index_to_world;
+    for (int a = 0; a < 3; a++) {
+        g->voxel[a] =
+            sqrt(m[4 * a] * m[4 * a] + m[4 * a + 1] * m[4 * a + 1] + m[4 * a + 2] * m[4 * a + 2]);
+    }
+    for (int row = 0; row < 3 && g->active_voxels; row++) {
+        double centre = m[12 + row], half = 0;
+        for (int a = 0; a < 3; a++) {
+            const double column = m[4 * a + row];
+            centre += column * 0.5 * ((double)g->lo[a] + g->hi[a]);
+            half += fabs(column) * 0.5 * ((double)g->hi[a] - g->lo[a] + 1);
         }
-        return r;
+        g->world_lo[row] = centre - half;
+        g->world_hi[row] = centre + half;
     }
-    if (has_extension(path, ".vdb")) {
-        return tyn_vdb_read(job, path);
-    }
-    if (has_extension(path, ".raw")) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "%s: a .raw file does not say its size: give \"size\" and \"type\" in a "
-                      "glTF scene",
-                      path);
-        return TYN_ERR_PARAMS;
-    }
-    tyn_log_print(job->log, TYN_LOG_ERROR,
-                  "%s: unknown kind of volume: must be .nvdb, .vdb or .raw", path);
-    return TYN_ERR_PARAMS;
-}
-
-tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
-                           uint64_t *clamped_negative, const tyn_log *log)
-{
-    if (!TYN_GIVEN(log, volume, path)) {
-        return TYN_ERR_PARAMS;
-    }
-    tyn_grid_job job = {.grid = grid, .log = log};
-    const tyn_result r = tyn_grid_read(&job, path);
-    *volume = job.volume;
-    if (clamped_negative) {
-        *clamped_negative += job.clamped;
-    }
-    return r;
 }

@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         tyn_vdb_load(&volume, path, NULL, &clamped, NULL) == TYN_OK) {
         tyn_volume_finish(&volume);
         tyn_grid_job list = {.use = TYN_GRID_LIST};
-        if (tyn_vdb_read(&list, path) == TYN_OK) {
+        if (tyn_vdb_read_file(&list, path) == TYN_OK) {
             free(list.list);
         }
     }

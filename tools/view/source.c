@@ -7,11 +7,6 @@
 
 static const double look_every = 0.5; // seconds, at the files
 
-static bool is_volume(const char *path)
-{
-    return text_ends_with(path, ".nvdb") || text_ends_with(path, ".vdb");
-}
-
 static bool is_map(const char *path)
 {
     return text_ends_with(path, ".exr") || text_ends_with(path, ".hdr");
@@ -62,7 +57,7 @@ static void watch_source(viewer *v)
 static void keep_numbers(const viewer *v, tyn_scene *scene)
 {
     const tyn_scene *old = &v->scene;
-    const bool keep = v->edited || is_volume(v->source.scene);
+    const bool keep = v->edited || tyn_is_volume(v->source.scene);
     for (uint32_t i = 0; keep && i < scene->num_media && i < old->num_media; i++) {
         tyn_medium *m = &scene->media[i];
         memcpy(m->sigma_s, old->media[i].sigma_s, sizeof m->sigma_s);

@@ -12,7 +12,14 @@
 extern "C" {
 #endif
 
-// Loads a scene: .gltf, .glb, or a bare volume (.nvdb, .vdb), which is framed and given a sun and a
+// Formats of volume files, by their extensions: each has a reader in the library.
+#define TYN_VOLUME_FORMATS(X) X(nvdb) X(vdb)
+#define TYN_VOLUME_ENDING(name) ", ." #name
+#define TYN_VOLUME_ENDINGS                                                                         \
+    "" TYN_VOLUME_FORMATS(TYN_VOLUME_ENDING) // to end a list of extensions with
+TYN_API bool tyn_is_volume(const char *path);
+
+// Loads a scene: .gltf, .glb, or a bare volume, which is framed and given a sun and a
 // sky (docs/scene-format.md, "A volume alone"). `environment` (may be NULL) replaces the scene's
 // map whole, and lights a bare volume in place of sun and sky. `scene` is initialised first; give
 // it back with tyn_scene_finish. What is no fault but should be known is in scene->warnings and is
@@ -44,7 +51,7 @@ typedef void (*tyn_file_found)(void *user, const char *path);
 TYN_API tyn_result tyn_scene_files(const char *path, const uint32_t *frame, tyn_file_found found,
                                    void *user, const tyn_log *log);
 
-// Loads one grid of a volume file (.nvdb, .vdb) by its extension; `grid` NULL = "density", else the
+// Loads one grid of a volume file by its extension; `grid` NULL = "density", else the
 // first float grid. Negative values are set to 0 and added to `clamped_negative` (may be NULL).
 TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
                                    uint64_t *clamped_negative, const tyn_log *log);
