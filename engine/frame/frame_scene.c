@@ -357,7 +357,7 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
             to_m_position(m, light->position, b->position);
             to_m_direction(m, light->direction, b->direction);
             float *d = b->direction, n = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-            const bool aims = n > 0 && light->kind != TYN_LIGHT_POINT;
+            const bool aims = n > 0 && tyn_light_traits_of(light->kind)->has_direction;
             for (int a = 0; a < 3; a++) {
                 d[a] = aims ? d[a] / n : (float)(a == 2);
             }

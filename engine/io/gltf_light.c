@@ -2,6 +2,7 @@
 #include "io/gltf_light.h"
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double quarter_pi = 0.785398163397448310;
@@ -21,6 +22,18 @@ static tyn_result read_cones(tyn_light *light, const json_doc *doc, const cJSON 
     return TYN_OK;
 }
 
+static tyn_result refuse_kind(const json_doc *doc, const cJSON *element)
+{
+    char names[128] = "";
+    size_t used = 0;
+    const tyn_light_traits *traits;
+    for (int kind = 0; (traits = tyn_light_traits_of((tyn_light_kind)kind)); kind++) {
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s\"%s\"", kind ? ", " : "",
+                                 traits->name);
+    }
+    return tyn_json_fault(doc, element, "type must be one of %s", names);
+}
+
 tyn_result tyn_gltf_read_light(tyn_light *light, const json_doc *doc, const cJSON *element)
 {
     const char *type = "";
@@ -33,7 +46,7 @@ tyn_result tyn_gltf_read_light(tyn_light *light, const json_doc *doc, const cJSO
         traits = tyn_light_traits_of(++light->kind);
     }
     if (!traits) {
-        return tyn_json_fault(doc, element, "type must be \"directional\", \"point\" or \"spot\"");
+        return refuse_kind(doc, element);
     }
     TYN_TRY(tyn_json_numbers(doc, element, "color", 3, 0, FLT_MAX, "a number >= 0", color));
     TYN_TRY(tyn_json_number(doc, element, "intensity", 0, FLT_MAX, "a number >= 0", &intensity));
@@ -41,7 +54,7 @@ tyn_result tyn_gltf_read_light(tyn_light *light, const json_doc *doc, const cJSO
         light->color[a] = (float)(color[a] * intensity);
     }
     TYN_TRY(tyn_json_object(doc, element, "spot", &spot));
-    if (light->kind != TYN_LIGHT_SPOT) {
+    if (!traits->has_cone) {
         return TYN_OK;
     }
     return spot ? read_cones(light, doc, spot)

@@ -9,26 +9,18 @@ _Static_assert((int)TYN_LIGHT_DIRECTIONAL == TYN_LIGHT_KIND_DIRECTIONAL &&
 
 struct light_block tyn_light_block(const tyn_light *light)
 {
-    struct light_block block = {.kind = (tyn_uint)light->kind, .shadow = TYN_LIGHT_NO_SHADOW};
+    const tyn_light_traits *kind = tyn_light_traits_of(light->kind);
+    struct light_block block = {.kind = (tyn_uint)light->kind,
+                                .shadow = TYN_LIGHT_NO_SHADOW,
+                                .mean_cosine = kind->has_position ? 0 : 1,
+                                .cos_inner = kind->has_cone ? light->cos_inner : kind->cos_inner,
+                                .cos_outer = kind->has_cone ? light->cos_outer : kind->cos_outer};
     memcpy(block.color, light->color, sizeof block.color);
-    switch (light->kind) {
-    case TYN_LIGHT_DIRECTIONAL:
-        block.mean_cosine = 1;
-        break;
-    case TYN_LIGHT_POINT:
-        block.cos_inner = block.cos_outer = -1;
-        break;
-    case TYN_LIGHT_SPOT:
-        block.cos_inner = light->cos_inner;
-        block.cos_outer = light->cos_outer;
-        break;
-    }
     return block;
 }
 
 double tyn_light_solid_angle(const tyn_light *light)
 {
-    return !light || light->kind == TYN_LIGHT_DIRECTIONAL
-               ? 0
-               : (double)light_lobe_integral(tyn_light_block(light));
+    const tyn_light_traits *kind = light ? tyn_light_traits_of(light->kind) : NULL;
+    return kind && kind->has_position ? (double)light_lobe_integral(tyn_light_block(light)) : 0;
 }

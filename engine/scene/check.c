@@ -181,7 +181,7 @@ static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log
 {
     const tyn_light_traits *traits = tyn_light_traits_of(l->kind);
     if (!traits) {
-        FAULT("lights[%u].kind = %d: must be directional, point or spot", i, (int)l->kind);
+        FAULT("lights[%u].kind = %d: must be one of tyn_light_kind", i, (int)l->kind);
     }
     if (!amount3(l->color)) {
         FAULT("lights[%u].color = %g, %g, %g: must be >= 0 and finite", i, l->color[0], l->color[1],

@@ -106,7 +106,7 @@ void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *p, const float extent[3], floa
         side /= 2;
     }
     for (uint32_t i = 0; i < num_lamps; i++) {
-        const bool narrow = lamps[i].kind == TYN_LIGHT_KIND_SPOT && lamps[i].cos_outer > 0.3f;
+        const bool narrow = lamps[i].cos_outer > 0.3f;
         const float c = lamps[i].cos_outer, tangent = sqrtf(1 - c * c) / fmaxf(c, 0.3f);
         for (uint32_t face = 0; face < (narrow ? 1u : 6u); face++) {
             struct lpv_scatter_bundle *b = &p->bundles[p->num_bundles++];

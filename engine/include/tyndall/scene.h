@@ -133,9 +133,11 @@ typedef struct tyn_light {
 } tyn_light;
 
 typedef struct tyn_light_traits {
-    const char *name; // as in KHR_lights_punctual
+    const char *name; // in glTF
     const char *unit; // of `color`
     bool has_position, has_direction;
+    bool has_cone;              // cos_inner and cos_outer are the light's own
+    float cos_inner, cos_outer; // ... else these: what it shines within, -1 and -1: all around
 } tyn_light_traits;
 TYN_API const tyn_light_traits *tyn_light_traits_of(tyn_light_kind kind); // NULL: no such kind
 // Power over `color`, sr; 0 of directional lights.
