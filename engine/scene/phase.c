@@ -86,11 +86,6 @@ double tyn_phase_narrowness(tyn_phase phase)
     return phase.table ? fmax(forward, backward) : fabs(phase.g);
 }
 
-bool tyn_phase_is_backward(tyn_phase phase)
-{
-    return !phase.table && phase.g < 0;
-}
-
 bool tyn_phase_has_lobe(tyn_phase phase)
 {
     return phase.table ? (double)phase.delta > g_min * g_min : phase.g > g_min;

@@ -14,8 +14,6 @@ bool tyn_phase_is_grey(const tyn_phase phase[3]); // equal in all channels
 // The Henyey-Greenstein phase function.
 tyn_phase tyn_phase_of_mean_cosine(float g);
 
-// Is it a Henyey-Greenstein lobe that points backward? Its moments are then those of the lobe as it is seen from behind.
-bool tyn_phase_is_backward(tyn_phase phase);
 // |g| of the narrowest lobe, forward or backward: the Legendre moments fall as its powers.
 double tyn_phase_narrowness(tyn_phase phase);
 // With lobes no narrower than TYN_PHASE_NARROWEST. Tables are as they are.
@@ -28,7 +26,7 @@ bool tyn_phase_has_lobe(tyn_phase phase);
 // greater mean cosine than `narrowest` is taken for that one. `tables`: the scene's.
 double tyn_phase_lobe_moments(const tyn_phase_table *tables, tyn_phase phase, double narrowest,
                               double *moments, uint32_t terms);
-// ... of all of p (see tyn_phase_is_backward).
+// ... of all of p; of a Henyey-Greenstein lobe that points backward, those of the lobe as it is seen from behind.
 void tyn_phase_moments(const tyn_phase_table *tables, tyn_phase phase, double *moments,
                        uint32_t terms);
 

@@ -21,6 +21,7 @@ const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LIGHT = 3u;
 uint place;
 #define PATH_ENDS_AT_FIRST_SURFACE (place == ON_BOUNDARY)
 #include "shaders/path/path.glsl"
+#include "shaders/path/path_entry.glsl"
 #include "shaders/path/path_heading.glsl"
 
 path_balance_partial partial;
@@ -174,48 +175,20 @@ vec3 volume_point(uvec4 bits)
     return p;
 }
 
-// Solid angle into which a lamp shines, sr; of a sun the area across its light, m^2.
-float light_measure(light_block light)
-{
-    vec3 size = args.box_hi - args.box_lo;
-    return light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? dot(size.yzx * size.zxy, abs(light.direction))
-                                                    : 2.0 * HG_PI * (1.0 - light.cos_outer);
-}
-
-// Where a sun's light comes into the box.
-vec3 sun_entry(vec3 way, vec3 random)
-{
-    vec3 size = args.box_hi - args.box_lo, across = size.yzx * size.zxy * abs(way);
-    float at = random.z * (across.x + across.y + across.z);
-    vec3 along = at < across.x ? vec3(1.0, 0.0, 0.0) : at < across.x + across.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
-    vec3 share = along.x > 0.0 ? vec3(0.0, random.xy) : along.y > 0.0 ? vec3(random.x, 0.0, random.y) : vec3(random.xy, 0.0);
-    vec3 side = step(way, vec3(0.0)); // 1: comes down this axis
-    return args.box_lo + mix(share, side, along) * size;
-}
-
-vec3 lamp_way(light_block lamp, vec2 random)
-{
-    float z = 1.0 - random.x * (light_measure(lamp) * (0.5 / HG_PI));
-    float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
-    vec3 axis = lamp.direction;
-    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
-    return z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
-}
-
 // The first flight of light from a lamp or a sun, drawn by power.
 void follow_light(inout rng_state rng)
 {
     float total = 0.0;
     for (uint i = 0u; i < args.num_lights; i++) {
         light_block light = light_get(i);
-        total += max3(light.color) * light_measure(light);
+        total += light_drawn_by(light);
     }
     uvec4 bits = rng_next(rng), more = rng_next(rng);
     float left = rng_float(bits.x) * total, weight = 0.0;
     light_block lamp = light_get(args.num_lights - 1u);
     for (uint i = 0u; i < args.num_lights; i++) {
         light_block light = light_get(i);
-        weight = max3(light.color) * light_measure(light);
+        weight = light_drawn_by(light);
         if (left < weight) {
             lamp = light;
             break;
@@ -229,7 +202,7 @@ void follow_light(inout rng_state rng)
     vec3 power = lamp.color * (lobe * total / max3(lamp.color));
 
     path_state path = path_new(3.0 * rng_float(bits.w));
-    path.vertex = sun ? sun_entry(way, random) : lamp.position;
+    path.vertex = sun ? draw_entry(way, random) : lamp.position;
     path.way = way;
     surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
     vec3 period;

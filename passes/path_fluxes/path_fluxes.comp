@@ -25,17 +25,6 @@ TYN_UPDATE(19, counters, counters_block counters);
 // Sums over this thread's paths, W.
 vec3 incident, leaving[6], direct, reflected, transmitted, absorbed_media, absorbed_surfaces, arriving_surfaces;
 
-// What suns and surroundings are drawn by.
-float sun_power(light_block sun)
-{
-    return max3(sun.color) * sum3(faces_across(sun.direction));
-}
-
-float sky_power()
-{
-    return ENVIRONMENT == TYN_PATH_ENV_NONE ? 0.0 : max3(env.mean) * HG_PI * sum3(faces_across(vec3(1.0)));
-}
-
 // Direction of travel of the next path's light, and its power over the probability of drawing it, W.
 vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
 {
@@ -45,7 +34,7 @@ vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
     float drawn = 0.0;
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
         light_block sun = light_get(i);
-        drawn = sun_power(sun);
+        drawn = light_drawn_by(sun);
         if (left < drawn || (i + 1u == args.num_lights && ENVIRONMENT == TYN_PATH_ENV_NONE)) {
             way = sun.direction;
             power = sun.color * (total / max(max3(sun.color), 1e-37));
@@ -63,7 +52,7 @@ vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
         way = vec3(across * cos(2.0 * HG_PI * random.y), across * sin(2.0 * HG_PI * random.y), z);
         power = 4.0 * HG_PI * env.radiance;
     }
-    power *= sum3(faces_across(way)) * total / max(sky_power(), 1e-37);
+    power *= sum3(faces_across(way)) * total / max(sky_drawn_by(), 1e-37);
     return way;
 }
 
@@ -93,9 +82,9 @@ void leave(path_state path, vec3 power, vec3 entered)
 void follow(uint first, uint end)
 {
     path_tint = vec3(1.0);
-    float total = sky_power();
+    float total = sky_drawn_by();
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
-        total += sun_power(light_get(i));
+        total += light_drawn_by(light_get(i));
     }
 
     uint index = first;

@@ -6,24 +6,6 @@
 #define PHOTON_TRACE_START_GLSL
 #include "shaders/path/path_entry.glsl"
 
-// Solid angle into which a lamp shines, sr; of a sun the area across its light, m^2.
-float start_measure(light_block light)
-{
-    return light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? sum3(faces_across(light.direction))
-                                                    : 2.0 * HG_PI * (1.0 - light.cos_outer);
-}
-
-// What lights are drawn by, W.
-float start_weight(light_block light)
-{
-    return max3(light.color) * start_measure(light);
-}
-
-float start_sky()
-{
-    return ENVIRONMENT == TYN_PATH_ENV_NONE ? 0.0 : max3(env.mean) * HG_PI * sum3(faces_across(vec3(1.0)));
-}
-
 float start_emitters()
 {
     return EMITTERS ? HG_PI * emitters.weight : 0.0;
@@ -31,21 +13,11 @@ float start_emitters()
 
 float start_total()
 {
-    float total = start_sky() + start_emitters();
+    float total = sky_drawn_by() + start_emitters();
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
-        total += start_weight(light_get(i));
+        total += light_drawn_by(light_get(i));
     }
     return total;
-}
-
-// Into a lamp's cone, uniform.
-vec3 start_cone(light_block lamp, vec2 random)
-{
-    float z = 1.0 - random.x * (1.0 - lamp.cos_outer);
-    float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
-    vec3 axis = lamp.direction;
-    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
-    return z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
 }
 
 // Of light of `radiance` that travels along `way` from the map, what no sun that the march follows has.
@@ -113,7 +85,7 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
     float left = even.z * total;
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
         light_block light = light_get(i);
-        float weight = start_weight(light);
+        float weight = light_drawn_by(light);
         if (left < weight || (i + 1u == args.num_lights && !EMITTERS && ENVIRONMENT == TYN_PATH_ENV_NONE)) {
             p.power = light.color * (total / max(max3(light.color), 1e-37));
             p.direct = vec3((plan.marched[i >> 5] >> (i & 31u) & 1u) == 0u);
@@ -122,7 +94,7 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
                 p.lobe = min(i, plan.lobes - 1u);
                 p.path.vertex = draw_entry(p.path.way, vec3(even.xy, min(left / weight, 0.9999999)));
             } else {
-                p.path.way = start_cone(light, even.xy);
+                p.path.way = lamp_way(light, even.xy);
                 p.path.vertex = light.position;
                 p.power *= light_lobe(light, dot(p.path.way, light.direction));
             }
@@ -138,7 +110,7 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
         }
         left -= weight;
     }
-    float sky = start_sky();
+    float sky = sky_drawn_by();
     p.path.way = vec3(0.0, 0.0, 1.0);
     p.power = vec3(0.0);
     p.direct = vec3(1.0);

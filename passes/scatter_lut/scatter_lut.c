@@ -121,7 +121,7 @@ static void make_moments(struct lut_block *block, const tyn_phase_table *tables,
     }
 }
 
-// c_l of the cones of the table "tms", for scatter_lut_map.glsl's tms_cone: averages of P_l over a cone
+// c_l of the cones of the table "tms", for scatter_lut_map.glsl's tms_level: averages of P_l over a cone
 // of half angle gamma, c = cos gamma. With d_l = P_l(c) - P_{l-1}(c), which keeps the digits of small
 // cones, c_l = -(d_l + d_{l+1}) / ((2l + 1) (1 - c)).
 static void make_cones(float (*out)[TYN_TMS_MAX_TERMS])

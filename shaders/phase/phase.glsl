@@ -113,7 +113,7 @@ float phase_forward_cosine(phase p)
     return p.table != 0u ? p.forward : max(p.g, 0.0);
 }
 
-// A lobe that points backward: its moments are those of the lobe as it is seen from behind (tyn_phase_is_backward).
+// A lobe that points backward: its moments are those of the lobe as it is seen from behind (tyn_phase_moments).
 bool phase_is_backward(phase p)
 {
     return p.table == 0u && p.g < 0.0;

@@ -94,15 +94,8 @@ float tms_away(uint texel)
     return 2.0 * root * root * root * root;
 }
 
-// Part of the sphere that a row's cone covers: even steps of sin(half its half angle).
-float tms_cone(uint cone)
-{
-    float s = float(cone) / float(TYN_TMS_CONES - 1);
-    return s * s;
-}
-
 // Fractional cone for a part of the sphere: the mix of the two cones around it that has its mean
-// cosine, 1 - part.
+// cosine, 1 - part. Cones are at even steps of sin(half their half angle).
 float tms_level(float part)
 {
     const float n = float(TYN_TMS_CONES - 1);
