@@ -1,7 +1,8 @@
 // toy_passes.c -- see toy_passes.h.
 #include "toy_passes.h"
 
-static const uint32_t no_spirv[5];
+// A module of one OpNop.
+static const uint32_t no_spirv[] = {0x07230203, 0x00010300, 0, 1, 0, 0x00010000};
 #define KERNEL(text, args, table)                                                                  \
     {                                                                                              \
         .name = text, .spirv = no_spirv, .spirv_size = sizeof no_spirv, .args_size = args,         \
