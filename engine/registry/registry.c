@@ -13,7 +13,7 @@
 #define PASS(name) extern const tyn_pass_desc tyn_pass_##name;
 #define METHOD(name) extern const tyn_method tyn_method_##name;
 #include "passes/pass_list.h"
-#include "method_list.h"
+#include "passes/methods/method_list.h"
 #undef PASS
 #undef METHOD
 
@@ -26,7 +26,7 @@ enum {
 #include "passes/pass_list.h"
         0,
     NUM_OWN_METHODS =
-#include "method_list.h"
+#include "passes/methods/method_list.h"
         0,
 };
 #undef PASS
@@ -38,7 +38,7 @@ static const tyn_pass_desc *passes[MAX_PASSES] = {
 #include "passes/pass_list.h"
 };
 static const tyn_method *methods[MAX_METHODS] = {
-#include "method_list.h"
+#include "passes/methods/method_list.h"
 };
 static const tyn_picture_hook *hooks[MAX_HOOKS];
 static atomic_uint num_passes = NUM_OWN_PASSES, num_methods = NUM_OWN_METHODS, num_hooks;

@@ -1,7 +1,7 @@
 // rsm.c -- reflective shadow maps: their sums are what a lit square, a closed room and a cone of light reflect.
 #include "bound.h"
 #include "gpu_test.h"
-#include "light/sources.h"
+#include "passes/methods/light/sources.h"
 #include "passes/rsm/rsm.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "solids.h"

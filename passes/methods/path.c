@@ -1,0 +1,390 @@
+// path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
+#include "passes/path/path.h"
+#include "passes/path_probe/path_probe.h"
+#include "passes/path_balance/path_balance.h"
+#include "passes/path_fluxes/path_fluxes.h"
+#include "passes/path_distance/path_distance.h"
+#include "passes/gbuffer/gbuffer.h"
+#include "passes/guides/guides.h"
+#include "passes/methods/job/path_scene.h"
+#include "shaders/path/path_args.h"
+#include "passes/methods/view/view.h"
+#include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
+
+// ---- what a path costs ------------------------------------------------------------------------
+
+// Threads of a dispatch: most, and of one whose paths are long.
+enum { THREADS = 16384, THREADS_LONG = 1024 };
+
+static const double RECORD_NS = 1e9; // of all dispatches of a record
+
+// ---- parameters -------------------------------------------------------------------------------
+
+static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_desc *pass)
+{
+    tyn_settings_params(job->settings, pass, p);
+    tyn_path_scene(job, p);
+    p->threads = THREADS; // by halves: they are part of the frame's structure
+    while (p->threads > THREADS_LONG &&
+           p->threads * tyn_path_cost_ns(job, p->homogeneous) > TYN_PATH_DISPATCH_NS) {
+        p->threads /= 2;
+    }
+}
+
+// A sample of fluxes. Few threads with many paths each: those that have their last path wait for the longest.
+enum { FLUX_THREADS = 512, FLUX_SAMPLE_PATHS = 8 };
+
+// Of a thread in one dispatch.
+static double flux_paths(const tyn_job *job, bool homogeneous)
+{
+    return TYN_PATH_DISPATCH_NS / (tyn_path_cost_ns(job, homogeneous) * FLUX_THREADS);
+}
+
+static uint32_t batch(const tyn_job *job)
+{
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        return 1;
+    }
+    tyn_path_params p;
+    if (job->outputs & TYN_OUTPUT_FLUXES) {
+        set_params(&p, job, &tyn_pass_path_fluxes);
+        double samples = flux_paths(job, p.homogeneous) / FLUX_SAMPLE_PATHS;
+        return samples < 1 ? 1 : (uint32_t)fmin(samples, 1024);
+    }
+    bool probes = job->outputs & TYN_OUTPUT_PROBE;
+    set_params(&p, job, probes ? &tyn_pass_path_probe : &tyn_pass_path);
+    double elements = probes ? job->view->num_points : (double)job->view->width * job->view->height;
+    double cost = tyn_path_cost_ns(job, p.homogeneous);
+    double samples = fmin(TYN_PATH_DISPATCH_NS / (cost * fmin(elements, p.threads)),
+                          RECORD_NS / (cost * elements));
+    return samples < 1 ? 1 : samples > 1e6 ? 1000000 : (uint32_t)samples;
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t height)
+{
+    return tyn_graph_history_image(g, name, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                   (tyn_extent){width, height, 1}, 1);
+}
+
+static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path);
+    params.sample_offset = job->view->sample_offset;
+    uint32_t w = job->view->width, h = job->view->height;
+    uint32_t lw = params.layers ? w : 1, lh = params.layers ? h : 1;
+    tyn_ref refs[PATH_NUM_PORTS] = {
+        [PATH_PORT_CAMERA] = job->refs.camera,
+        [PATH_PORT_MEAN] = history(g, "path_mean", w, h),
+        [PATH_PORT_LOW] = history(g, "path_low", w, h),
+        [PATH_PORT_DEVIATION] = history(g, "path_deviation", w, h),
+        [PATH_PORT_MEAN_SINGLE] = history(g, "path_single", lw, lh),
+        [PATH_PORT_MEAN_MULTIPLE] = history(g, "path_multiple", lw, lh),
+        [PATH_PORT_MEAN_TRANSMITTANCE] = history(g, "path_transmittance", lw, lh),
+    };
+    const tyn_resume *resume = job->view->resume;
+    if (resume) {
+        params.resumed = job->view->first_sample == resume->num_samples;
+        memcpy(&refs[PATH_PORT_RESUMED], job->refs.resumed, sizeof job->refs.resumed);
+        for (int port = PATH_PORT_RESUMED_SINGLE; port <= PATH_PORT_RESUMED_TRANSMITTANCE; port++) {
+            if (params.layers && !refs[port].resource) { // nobody asks for this layer
+                refs[port] = refs[PATH_PORT_RESUMED];
+            }
+        }
+    }
+    tyn_connect_path_scene(refs, job, bricks);
+    tyn_graph_add(g, &tyn_pass_path, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, refs[PATH_PORT_RADIANCE]);
+    tyn_job_output(g, job, TYN_OUTPUT_ERROR, refs[PATH_PORT_ERROR]);
+    tyn_job_output(g, job, TYN_OUTPUT_LOW, refs[PATH_PORT_LOW]);
+    tyn_job_output(g, job, TYN_OUTPUT_DEVIATION, refs[PATH_PORT_DEVIATION]);
+    tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
+    tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
+    tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
+    tyn_job_counters(g, job, &tyn_pass_path, refs[PATH_PORT_COUNTERS]);
+    if (job->outputs & TYN_OUTPUT_DISPLAY) {
+        tyn_add_display(g, job, refs[PATH_PORT_RADIANCE]);
+    }
+}
+
+static void add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_probe);
+    tyn_ref refs[PATH_PROBE_NUM_PORTS] = {
+        [PATH_PROBE_PORT_POINTS] = job->refs.points,
+        [PATH_PROBE_PORT_STATE] = tyn_graph_history_buffer(
+            g, "path_probes", tyn_path_probe_state_size(job->view->num_points), 1),
+    };
+    tyn_connect_path_scene(refs, job, bricks);
+    tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
+    tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
+}
+
+// The box that is balanced.
+static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
+{
+    memset(p->box[0], 0, sizeof p->box[0]);
+    memcpy(p->box[1], frame->medium.extent, sizeof p->box[1]);
+    if (frame->num_triangles) {
+        tyn_scene_box(frame, p->box[0], p->box[1]);
+    }
+}
+
+// Power of the lamps inside the box, which count as emitted.
+static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
+{
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        const struct light_block *l = &tyn_first_lamp(&frame->lights)[i];
+        bool inside = true;
+        for (int a = 0; a < 3; a++) {
+            inside = inside && l->position[a] >= p->box[0][a] && l->position[a] <= p->box[1][a];
+        }
+        for (int c = 0; inside && c < 3; c++) {
+            p->lamp_power[c] += l->color[c] * light_lobe_integral(*l);
+        }
+    }
+}
+
+// One `sample` of a balance is a dispatch of some thousand paths: as many as the time limit allows.
+static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    enum { BALANCE_CHUNKS = 1, SOLID_CHUNKS = 4, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_balance);
+    set_box(&params, job->frame);
+    set_lamp_power(&params, job->frame);
+    double paths = TYN_PATH_DISPATCH_NS / tyn_path_cost_ns(job, params.homogeneous);
+    params.chunks = params.triangles ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
+    params.threads = 4096;
+    params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
+                         : paths > CHUNK_MAX ? CHUNK_MAX
+                                             : (uint32_t)paths;
+    params.first_sample *= params.chunks * params.num_samples;
+    tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {
+        [PATH_BALANCE_PORT_STATE] =
+            tyn_graph_history_buffer(g, "path_balance", tyn_path_balance_state_size(), 1),
+        [PATH_BALANCE_PORT_AREAS] = job->refs.areas,
+    };
+    tyn_connect_path_scene(refs, job, bricks);
+    tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
+    tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
+}
+
+// What paths from suns and surroundings do not carry.
+static tyn_result check_fluxes(const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct medium_block *m = &frame->medium;
+    const struct env_block *env = &frame->environment;
+    const char *wrong = NULL;
+    bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
+    if (frame->empty && !frame->num_triangles) {
+        wrong = "there is no medium and no surface";
+    } else if (frame->lights.num_lamps) {
+        wrong =
+            "there are lamps, whose light starts inside; only suns and the environment may shine "
+            "(balance knows lamps)";
+    } else if (frame->emissive || job->refs.emitters.resource) {
+        wrong = "media or surfaces emit; only suns and the environment may shine (balance knows "
+                "emission)";
+    } else if (!frame->lights.num_directional && !sky) {
+        wrong = "there is neither a sun nor an environment";
+    } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
+        wrong = "the medium repeats along all axes: no light enters it";
+    }
+    if (wrong) {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "output 'fluxes': %s", wrong);
+    }
+    return wrong ? TYN_ERR_UNSUPPORTED : TYN_OK;
+}
+
+static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_fluxes);
+    set_box(&params, job->frame);
+    params.threads = FLUX_THREADS;
+    // A record's structure may not depend on the number of its samples.
+    double paths = flux_paths(job, params.homogeneous);
+    params.chunks = 1;
+    while (params.chunks < FLUX_SAMPLE_PATHS && params.chunks * paths < FLUX_SAMPLE_PATHS) {
+        params.chunks *= 2;
+    }
+    params.first_sample *= FLUX_SAMPLE_PATHS;
+    params.num_samples *= FLUX_SAMPLE_PATHS / params.chunks;
+    tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {
+        [PATH_FLUXES_PORT_STATE] =
+            tyn_graph_history_buffer(g, "path_fluxes", tyn_path_fluxes_state_size(), 1),
+    };
+    tyn_connect_path_scene(refs, job, bricks);
+    tyn_graph_refuse(g, check_fluxes(job));
+    tyn_graph_add(g, &tyn_pass_path_fluxes, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
+    tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
+}
+
+// A periodic medium's own axes must be those of M; surfaces repeat with it, each copy in a period of its own.
+static tyn_result check_repeat(const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    const struct shape_block *s = &job->frame->shapes[0];
+    bool repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
+    for (int i = 0; repeat && i < 9; i++) {
+        if (i / 3 != i % 3 && fabsf(s->rows[i / 3][i % 3]) * m->extent[i % 3] > 1e-4f) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "shape 0 repeats and is sheared; the axes of a periodic box must be at "
+                          "right angles");
+            return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    float lo[3], hi[3];
+    tyn_surfaces_box(job->frame, lo, hi);
+    for (int a = 0; repeat && a < 3; a++) {
+        if (m->repeat[a] && hi[a] - lo[a] > 1.0001f * m->extent[a]) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "surfaces reach over %g m along the medium's axis %d, on which it "
+                          "repeats every %g m; they repeat with it and must fit into one period",
+                          (double)(hi[a] - lo[a]), a, (double)m->extent[a]);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    return TYN_OK;
+}
+
+static void add_distances(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
+{
+    const tyn_path_distance_params params = {job->view->width, job->view->height};
+    tyn_ref refs[PATH_DISTANCE_NUM_PORTS] = {
+        [PATH_DISTANCE_PORT_CAMERA] = job->refs.camera,
+    };
+    tyn_connect(refs, PATH_DISTANCE_PORT_SURFACES, job->refs.geometry);
+    tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
+    in->surface = refs[PATH_DISTANCE_PORT_RADIANCE];
+    in->distances = refs[PATH_DISTANCE_PORT_DISTANCES];
+}
+
+// Depths have no noise to take away: the ray march finds them, and does nothing else here.
+static void add_depth(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
+{
+    if (tyn_is_periodic(job->frame)) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "the layer 'depth' does not know periodic media (\"repeat\"); leave it out");
+        tyn_graph_refuse(g, TYN_ERR_PARAMS);
+        return;
+    }
+    tyn_job depth = *job;
+    depth.outputs = TYN_OUTPUT_DEPTH;
+    depth.num_hooks = 0;
+    const tyn_field no_field = {0};
+    tyn_view_inputs view = {.sources = s, .field = &no_field};
+    if (job->frame->num_triangles) {
+        add_distances(g, &depth, &view);
+    }
+    tyn_add_picture(g, &depth, &view);
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH |
+                                TYN_OUTPUT_FLUXES | TYN_GUIDE_OUTPUTS;
+    tyn_sources s = {0};
+    tyn_result result = check_repeat(job);
+    if (result != TYN_OK) {
+        return result;
+    }
+    if (tyn_job_hooks_read(job)) {
+        tyn_job_warn(job, "what stands between march and composite is left out: 'path' does not "
+                          "march");
+    }
+    if (!job->frame->empty) {
+        tyn_add_medium(g, job, &s);
+    }
+    if (job->outputs & ~not_images) {
+        add_image(g, job, s.bricks);
+    }
+    tyn_add_guides(g, job);
+    if (job->outputs & TYN_OUTPUT_PROBE) {
+        add_probes(g, job, s.bricks);
+    }
+    if (job->outputs & TYN_OUTPUT_DEPTH) {
+        add_depth(g, job, &s);
+    }
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        add_balance(g, job, s.bricks);
+    }
+    if (job->outputs & TYN_OUTPUT_FLUXES) {
+        add_fluxes(g, job, s.bricks);
+    }
+    return tyn_graph_status(g);
+}
+
+static const tyn_pass_desc *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    &tyn_pass_path,
+    &tyn_pass_path_probe,
+    &tyn_pass_path_balance,
+    &tyn_pass_path_fluxes,
+    &tyn_pass_path_distance,
+    &tyn_pass_gbuffer,
+    &tyn_pass_guides,
+    &tyn_pass_raymarch,
+    &tyn_pass_tonemap,
+    &tyn_pass_export,
+    NULL,
+};
+
+static double ended(const tyn_regime *r)
+{
+    (void)r;
+    return 0.1;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "samples",
+     .where = {TYN_ABOVE(albedo, 0.99), TYN_ABOVE(transport_depth, 9.999)},
+     .level = TYN_LIMIT_STRAINED,
+     .advice = {"unbiased, but light scatters hundreds of times (albedo %.4g, %.4g transport mean "
+                "free paths deep): samples are dear, and rare long paths make bright pixels",
+                {TYN_FIGURE(albedo), TYN_FIGURE(transport_depth)}},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "samples",
+     .advice = {"unbiased: only the number of samples decides"},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "paths that are ended",
+     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(scaled_albedo, 0.9999)},
+     .error = ended,
+     .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
+                 "paths end after so many steps (-D path.max_steps), what is left of them is lost",
+                 {TYN_FIGURE(depth)}},
+     .source = "docs/stress.md, \"What is found\""},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
+const tyn_method tyn_method_path = {
+    .info = {.name = "path",
+             .summary = "unbiased path tracing: the reference",
+             .passes = passes,
+             .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
+                        TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR |
+                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE |
+                        TYN_OUTPUT_FLUXES | TYN_OUTPUT_LOW | TYN_OUTPUT_DEVIATION |
+                        TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL,
+             .progressive = true,
+             .traces_rays = true,
+             .reference = true,
+             .phases = TYN_PHASES_ALL,
+             .limits = limits},
+    .reads_env_cdf = true,
+    .batch = batch,
+    .declare = declare,
+};

@@ -1,0 +1,14 @@
+// lpv.h -- the solver of method "lpv": power moves on from cell to cell of one lattice.
+#pragma once
+#include <tyndall/extend/field.h>
+#include "passes/methods/light/sources.h"
+#include "passes/lpv/lpv.h"
+#include "passes/lpv_blockers/lpv_blockers.h"
+#include "passes/lpv_reflect/lpv_reflect.h"
+#include "passes/lpv_scatter/lpv_scatter.h"
+
+#define TYN_LPV_PASSES                                                                             \
+    &tyn_pass_lpv_reflect, &tyn_pass_lpv_scatter, &tyn_pass_lpv_blockers, &tyn_pass_lpv
+
+// The cells of `s` with their unscattered light, and what surfaces reflect of it: after so many iterations.
+void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field);

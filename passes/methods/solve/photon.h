@@ -1,0 +1,16 @@
+// photon.h -- the solver of method "photon": caches of photons, renewed a few in a frame.
+#pragma once
+#include <tyndall/extend/field.h>
+#include "passes/methods/light/sources.h"
+#include "passes/photon_cache/photon_cache.h"
+#include "passes/photon_trace/photon_trace.h"
+#include "passes/photon_upsample/photon_upsample.h"
+#include "passes/photon_view/photon_view.h"
+
+#define TYN_PHOTON_PASSES                                                                          \
+    &tyn_pass_photon_trace, &tyn_pass_photon_cache, &tyn_pass_photon_upsample, &tyn_pass_photon_view
+
+// Light in the cells of `s`, which hold the medium alone: as moments, and towards the eye if a picture is wanted. All light of
+// the scene, but what `marched` has of suns and lamps until it has scattered (photon_trace.first).
+void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                      const tyn_sources *marched, tyn_field *field);

@@ -1,0 +1,18 @@
+// propagation.h -- the solver of method "pop-paper": light moves from cell to cell of its own aligned grid.
+#pragma once
+#include <tyndall/extend/field.h>
+#include "passes/methods/light/sources.h"
+#include "passes/merge_grids/merge_grids.h"
+#include "passes/propagate_radial/propagate_radial.h"
+#include "passes/propagate_rect/propagate_rect.h"
+#include "passes/residuum/residuum.h"
+#include "passes/upsample/upsample.h"
+
+#define TYN_PROPAGATION_PASSES                                                                     \
+    &tyn_pass_propagate_rect, &tyn_pass_propagate_radial, &tyn_pass_residuum,                      \
+        &tyn_pass_merge_grids, &tyn_pass_upsample
+
+// The light of each sun, ordinate and lamp of `s` and of its virtual point lights, scattered or not; merged towards the
+// eye and upsampled with the medium as guide. `field` stays as it is where nothing shines.
+void tyn_solve_propagation(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                           tyn_field *field);

@@ -1,0 +1,95 @@
+// probe.c -- the light field at points.
+#include "passes/methods/view/view.h"
+#include <tyndall/registry.h>
+#include <string.h>
+
+static uint32_t points_outside(const tyn_job *job)
+{
+    const float *m = job->frame->m_from_world, *extent = job->frame->medium.extent;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < job->view->num_points; i++) {
+        const float *p = job->view->points[i];
+        bool outside = false;
+        for (int a = 0; a < 3; a++) {
+            float x = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
+            outside = outside || (!job->frame->medium.repeat[a] &&
+                                  (x < -1e-3f * extent[a] || x > 1.001f * extent[a]));
+        }
+        count += outside;
+    }
+    return count;
+}
+
+// The node; its results.
+static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in,
+                         tyn_ref points, bool scattered_only, bool counted)
+{
+    tyn_probe_params params;
+    tyn_settings_params(job->settings, &tyn_pass_probe, &params);
+    params.mode = job->frame->medium.mode;
+    params.channels = in->sources->lattice.shape.channels;
+    memcpy(params.tint, in->sources->lattice.shape.tint, sizeof params.tint);
+    params.num_suns = in->sources->num_suns;
+    params.num_ordinates = in->sources->sky.count;
+    if (in->sources->lamps.radials.radials.resource) {
+        params.local_lights = in->sources->lamps.vpls ? TYN_PROBE_LOCAL_ALL : TYN_PROBE_LOCAL_LAMPS;
+    }
+    params.scattered_only = scattered_only;
+    for (int axis = 0; axis < 3; axis++) {
+        memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [PROBE_PORT_MEDIUM] = job->refs.medium,
+        [PROBE_PORT_LIGHTS] = job->refs.suns,
+        [PROBE_PORT_MOMENTS] = in->field->moments,
+        [PROBE_PORT_CELLS] = in->sources->lattice.cells,
+        [PROBE_PORT_POINTS] = points,
+        [PROBE_PORT_VPL_DISTANCES] = in->sources->surface_light.vpls.vpl_distances,
+        [PROBE_PORT_ROOMS] = in->sources->surface_light.rooms,
+        [PROBE_PORT_ENVIRONMENT] = tyn_mean_environment(job, in->sources),
+    };
+    tyn_connect(refs, PROBE_PORT_ORDINATES, in->sources->sky.columns);
+    tyn_connect(refs, PROBE_PORT_BEAMS, in->sources->beams);
+    tyn_connect(refs, PROBE_PORT_RADIALS, in->sources->lamps.radials);
+    tyn_connect(refs, PROBE_PORT_WALL_LINKS, in->sources->walls.cut);
+    tyn_connect(refs, PROBE_PORT_SHADOW_ATLAS, in->sources->shadows);
+    tyn_graph_add(g, &tyn_pass_probe, &params, refs);
+    if (counted) {
+        tyn_job_counters(g, job, &tyn_pass_probe, refs[PROBE_PORT_COUNTERS]);
+    }
+    return refs[PROBE_PORT_RESULTS];
+}
+
+void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
+{
+    uint32_t outside = points_outside(job);
+    if (outside > 0) {
+        tyn_job_warn(job,
+                     "probe: %u of %u points lie outside the media's box; there the scattered "
+                     "light is the nearest face's, too much",
+                     outside, job->view->num_points);
+    }
+    tyn_job_output(g, job, TYN_OUTPUT_PROBE,
+                   add_probe(g, job, in, job->refs.points, job->view->scattered_only, true));
+}
+
+// A probe at every texel.
+void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
+{
+    const VkExtent3D size = job->light->red->extent;
+    const tyn_light_points_params grid = {{size.width, size.height, size.depth}};
+    tyn_ref places[LIGHT_POINTS_NUM_PORTS] = {[LIGHT_POINTS_PORT_MEDIUM] = job->refs.medium};
+    tyn_graph_add(g, &tyn_pass_light_points, &grid, places);
+    const tyn_light_field_params params = {.half = job->light->red->format ==
+                                                   VK_FORMAT_R16G16B16A16_SFLOAT};
+    tyn_ref refs[LIGHT_FIELD_NUM_PORTS] = {
+        [LIGHT_FIELD_PORT_RESULTS] =
+            add_probe(g, job, in, places[LIGHT_POINTS_PORT_POINTS], !job->light->unscattered,
+                      !(job->outputs & TYN_OUTPUT_PROBE)),
+        [LIGHT_FIELD_PORT_RED] = job->refs.light[0],
+        [LIGHT_FIELD_PORT_GREEN] = job->refs.light[1],
+        [LIGHT_FIELD_PORT_BLUE] = job->refs.light[2],
+    };
+    tyn_graph_add(g, &tyn_pass_light_field, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_LIGHT, refs[LIGHT_FIELD_PORT_RED]);
+}
