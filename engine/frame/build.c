@@ -4,7 +4,6 @@
 #include "frame/env_cdf.h"
 #include "gpu/device.h"
 #include "registry/registry.h"
-#include "passes/medium/medium.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,17 +88,14 @@ static bool has_albedo(const tyn_scene *scene)
 
 static void choose_storage(tyn_context *ctx)
 {
-    tyn_medium_params medium = {0};
-    tyn_settings_params(ctx->settings, &tyn_pass_medium, &medium);
-    if (medium.storage == TYN_MEDIUM_STORAGE_AUTO) {
-        // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
-        ctx->colors.half = ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
-        ctx->atlas.half &= ctx->colors.half;
-    } else {
-        ctx->colors.half = medium.storage == TYN_MEDIUM_STORAGE_HALF;
-        ctx->atlas.half &= ctx->colors.half;
-    }
-    ctx->colors.half = ctx->colors.half && !has_albedo(ctx->scene);
+    tyn_setting storage;
+    tyn_settings_get(ctx->settings, "medium.storage", &storage, NULL);
+    // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
+    const bool half = strcmp(storage.word, "auto")
+                          ? !strcmp(storage.word, "half")
+                          : ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+    ctx->atlas.half &= half;
+    ctx->colors.half = half && !has_albedo(ctx->scene);
 }
 
 tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)

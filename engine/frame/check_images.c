@@ -1,7 +1,7 @@
 // check_images.c -- are the images that the host lends fit?
 #include "frame/context.h"
 #include "base/fault.h"
-#include "job/output.h"
+#include "frame/output.h"
 #include "gpu/device.h"
 #include <stdio.h>
 

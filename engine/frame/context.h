@@ -23,8 +23,6 @@ struct tyn_context {
     tyn_graph *graph;
     // What the last declaration was made from; the graph reads it until it has recorded.
     tyn_frame_scene frame;
-    // A march made now sees the media by, where the picture is an impostor.
-    struct camera_block impostor;
     tyn_atlas atlas, colors;
     const tyn_scene *scene;
     float (*points)[3]; // probe points in M

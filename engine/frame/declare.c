@@ -1,18 +1,5 @@
 // declare.c -- a frame as nodes of the graph.
 #include "frame/context.h"
-#include "frame/impostor.h"
-#include <tyndall/extend/limits.h>
-#include "passes/halve_depth/halve_depth.h"
-
-// The march ends at a depth of its own size.
-static void halve_depth(tyn_graph *g, tyn_scene_refs *refs)
-{
-    const tyn_halve_depth_params params = {0};
-    tyn_ref ports[HALVE_DEPTH_NUM_PORTS] = {[HALVE_DEPTH_PORT_FULL_DEPTH] = refs->depth};
-    tyn_graph_add(g, &tyn_pass_halve_depth, &params, ports);
-    refs->full_depth = refs->depth;
-    refs->depth = ports[HALVE_DEPTH_PORT_HALF_DEPTH];
-}
 
 tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
 {
@@ -40,11 +27,11 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     tyn_frame_upload(ctx, frame, &job.refs);
-    if (job.refs.depth.resource && job.half_view) {
-        halve_depth(ctx->graph, &job.refs);
+    for (uint32_t i = 0; i < job.num_hooks; i++) {
+        if (job.hooks[i]->prepare) {
+            job.hooks[i]->prepare(ctx->graph, &job);
+        }
     }
-    tyn_frame_impostor(ctx, &job);
-    tyn_limits_warn(&job, 0);
     result = ctx->method->declare(ctx->graph, &job);
     return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
 }

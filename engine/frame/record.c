@@ -3,7 +3,7 @@
 #include "base/given.h"
 #include "base/hash.h"
 #include "gpu/device.h"
-#include "passes/methods/job/output.h"
+#include "frame/output.h"
 #include "scene/check.h"
 
 tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)

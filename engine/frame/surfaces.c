@@ -2,7 +2,7 @@
 #include "frame/surfaces.h"
 #include "frame/surface_most.h"
 #include "frame/surface_tables.h"
-#include "passes/methods/light/shadow_cull.h"
+#include "frame/shadow_cull.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@ typedef struct tyn_surface_data {
     uint32_t num_textures;
     uint32_t *texels; // of all levels of all textures; at least one
     size_t num_texels;
-    struct surface_range *below; // of every node (passes/methods/light/shadow_cull.h); NULL without a hierarchy
+    struct surface_range *below; // of every node (frame/shadow_cull.h); NULL without a hierarchy
     struct tyn_views_seen *seen; // with `below`
     uint32_t num_nodes;
     tyn_surface_node leaf;  // of all triangles, for surfaces without a hierarchy

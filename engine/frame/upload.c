@@ -2,7 +2,7 @@
 #include "frame/context.h"
 #include "base/hash.h"
 #include "frame/env_cdf.h"
-#include "job/output.h"
+#include "frame/output.h"
 #include <string.h>
 
 static void fill_atlas(void *user, void *texels)

@@ -4,6 +4,19 @@
 
 #define REFUSE(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), false)
 
+#define LENGTH(list, count)                                                                        \
+    for (count = 0; (list) && (list)[count]; count++) {                                            \
+    }
+
+tyn_addition tyn_addition_of(const tyn_plugin *p)
+{
+    tyn_addition a = {.passes = p->passes, .methods = p->methods, .hooks = p->hooks};
+    LENGTH(p->passes, a.num_passes)
+    LENGTH(p->methods, a.num_methods)
+    LENGTH(p->hooks, a.num_hooks)
+    return a;
+}
+
 const tyn_limit tyn_limits_untold[] = {
     {.key = "limits",
      .level = TYN_LIMIT_STRAINED,
@@ -75,16 +88,15 @@ static bool check_pass(const char *who, const tyn_pass_desc *pass, const tyn_log
     if (!check_name(who, "pass", pass->name, log)) {
         return false;
     }
-    if (!pass->summary || !pass->declare || !pass->record || !pass->ports || !pass->kernels) {
+    if (!pass->summary || !pass->declare || !pass->record || !pass->ports ||
+        (pass->num_kernels && !pass->kernels)) {
         REFUSE("%s: pass '%s': summary, ports, kernels, declare and record are required", who,
-               pass->name);
+              pass->name);
     }
-    if (!pass->num_ports || pass->num_ports > TYN_MAX_PORTS || !pass->num_kernels ||
+    if (!pass->num_ports || pass->num_ports > TYN_MAX_PORTS ||
         (pass->num_params && !pass->params) || pass->debug_port >= pass->num_ports) {
-        REFUSE("%s: pass '%s': %u ports and %u kernels; it must have 1 to %d ports, the debug port "
-               "%u among them, and a kernel or more",
-               who, pass->name, pass->num_ports, pass->num_kernels, TYN_MAX_PORTS,
-               pass->debug_port);
+        REFUSE("%s: pass '%s': %u ports; it must have 1 to %d, the debug port %u among them", who,
+              pass->name, pass->num_ports, TYN_MAX_PORTS, pass->debug_port);
     }
     bool fit = true;
     for (uint32_t i = 0; i < pass->num_ports; i++) {
@@ -136,8 +148,8 @@ bool tyn_addition_check(const tyn_addition *a, const tyn_log *log)
     for (uint32_t i = 0; i < a->num_hooks && fit; i++) {
         const tyn_picture_hook *h = a->hooks[i];
         fit = check_name(a->who, "hook", h->name, log);
-        if (fit && (!h->reads || !h->declare)) {
-            REFUSE("%s: hook '%s': reads and declare are required", a->who, h->name);
+        if (fit && (!h->reads != !h->declare || (!h->reads && !h->prepare))) {
+            REFUSE("%s: hook '%s': prepare, or reads and declare, are required", a->who, h->name);
         }
     }
     return fit;

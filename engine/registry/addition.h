@@ -1,6 +1,6 @@
 // addition.h -- passes, methods and hooks that are added to those of the library, all of them or none.
 #pragma once
-#include <tyndall/extend/method.h>
+#include <tyndall/extend/plugin.h>
 
 typedef struct tyn_addition {
     const char *who;    // begins every line of the log: "plugin 'x.so'"
@@ -12,6 +12,9 @@ typedef struct tyn_addition {
     const tyn_picture_hook *const *hooks;
     uint32_t num_hooks;
 } tyn_addition;
+
+// What a plugin or a module brings; `who` and `plugin` are left empty.
+tyn_addition tyn_addition_of(const tyn_plugin *plugin);
 
 // Are the tables fit, each for itself? What is wrong first is one log line.
 bool tyn_addition_check(const tyn_addition *a, const tyn_log *log);

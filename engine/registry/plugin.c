@@ -1,7 +1,6 @@
 // plugin.c -- loads shared objects with passes, methods and hooks.
 #include "registry/addition.h"
 #include "base/given.h"
-#include <tyndall/extend/plugin.h>
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -25,10 +24,6 @@ static loaded plugins[MAX_PLUGINS];
 static atomic_uint num_plugins;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-#define LENGTH(list, count)                                                                        \
-    for (count = 0; (list) && (list)[count]; count++) {                                            \
-    }
-
 uint32_t tyn_num_plugins(void)
 {
     return atomic_load(&num_plugins);
@@ -45,9 +40,10 @@ void tyn_plugin_at(uint32_t index, tyn_plugin_info *info)
         info->name = p->name;
         info->summary = p->summary;
         info->path = plugins[index].path;
-        LENGTH(p->passes, info->num_passes)
-        LENGTH(p->methods, info->num_methods)
-        LENGTH(p->hooks, info->num_hooks)
+        const tyn_addition a = tyn_addition_of(p);
+        info->num_passes = a.num_passes;
+        info->num_methods = a.num_methods;
+        info->num_hooks = a.num_hooks;
     }
 }
 
@@ -67,10 +63,9 @@ static tyn_result add(const tyn_plugin *p, const char *path, const char *who, co
     if (!copy) {
         return TYN_ERR_MEMORY;
     }
-    tyn_addition a = {who, p->name, .passes = p->passes, .methods = p->methods, .hooks = p->hooks};
-    LENGTH(p->passes, a.num_passes)
-    LENGTH(p->methods, a.num_methods)
-    LENGTH(p->hooks, a.num_hooks)
+    tyn_addition a = tyn_addition_of(p);
+    a.who = who;
+    a.plugin = p->name;
     *p->calls = &calls;
     const tyn_result result = tyn_registry_add(&a, log);
     if (result == TYN_OK) {

@@ -1,10 +1,7 @@
 // impostor_camera.c -- see impostor_camera.h.
 #include "impostor_camera.h"
-#include "impostor_camera.comp.h"
 
 static const tyn_port ports[] = {IMPOSTOR_CAMERA_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(impostor_camera)};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -15,15 +12,19 @@ static tyn_result declare(tyn_builder *b, const void *params)
 
 static void record(tyn_recorder *r, const void *params)
 {
-    (void)params;
-    TYN_DISPATCH(r, .cells = {1, 1, 1});
+    const tyn_impostor_camera_params *p = params;
+    tyn_rec_update(r, IMPOSTOR_CAMERA_PORT_TAKEN, 0, &p->camera, sizeof p->camera);
 }
 
 const tyn_pass_desc tyn_pass_impostor_camera = {
     .name = "impostor_camera",
     .summary = "the camera by which the media were marched last",
     .serves = "impostors (impostor.on)",
-    TYN_PASS_TABLES(tyn_impostor_camera_params),
+    .ports = ports,
+    .num_ports = TYN_COUNT(ports),
+    .params_size = sizeof(tyn_impostor_camera_params),
+    .declare = declare,
+    .record = record,
     .debug_port = IMPOSTOR_CAMERA_PORT_TAKEN,
     .debug_meaning = "the camera",
     .holds = offsetof(tyn_impostor_camera_params, hold),

@@ -2,15 +2,16 @@
 // done again.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/scene_args.h"
 
 typedef struct tyn_impostor_camera_params {
-    uint32_t size[2]; // of the view, pixels
-    tyn_hold hold;    // until the view has changed so much that the media are marched again
+    struct camera_block camera; // of a march made now
+    uint32_t size[2];           // of the view, pixels
+    tyn_hold hold; // until the view has changed so much that the media are marched again
 } tyn_impostor_camera_params;
 
 // clang-format off
 #define IMPOSTOR_CAMERA_PORTS(X) \
-    X(IMPOSTOR_CAMERA, CAMERA, camera, IN, BUFFER, "struct camera_block: of a march made now"), \
     X(IMPOSTOR_CAMERA, TAKEN, taken, INOUT, BUFFER, "struct camera_block: of the last one, a history")
 // clang-format on
 enum { IMPOSTOR_CAMERA_PORTS(TYN_PORT_ENUM), IMPOSTOR_CAMERA_NUM_PORTS };

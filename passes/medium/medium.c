@@ -38,9 +38,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 static const char *const storages[] = {"auto", "half", "float"};
 
 static const tyn_param params_table[] = {
-    {"storage", TYN_PARAM_ENUM, offsetof(tyn_medium_params, storage), TYN_MEDIUM_STORAGE_AUTO, 0, 2,
-     "", "how density grids are kept: auto is half floats on a GPU if their range is enough",
-     storages},
+    {"storage", TYN_PARAM_ENUM, offsetof(tyn_medium_params, storage), 0, 0, 2, "",
+     "how density grids are kept: auto is half floats on a GPU if their range is enough", storages},
     {"samples", TYN_PARAM_INT, offsetof(tyn_medium_params, samples), 3, 1, 8, "",
      "points along each axis of a voxel at the edge of a shape that its mean is taken over", NULL},
 };

@@ -7,8 +7,6 @@
 #include "shaders/common/bundles.h"
 #include "shaders/common/scene_args.h"
 
-enum { TYN_MEDIUM_STORAGE_AUTO, TYN_MEDIUM_STORAGE_HALF, TYN_MEDIUM_STORAGE_FLOAT };
-
 typedef struct tyn_medium_params {
     uint32_t mode;      // TYN_MEDIUM_*
     uint32_t direct;    // 1: the atlas itself is the density texture, only bricks are made
@@ -17,7 +15,7 @@ typedef struct tyn_medium_params {
     uint32_t size[3];   // medium_block.size
     uint32_t bricks[3]; // medium_block.bricks
     int32_t samples;    // along each axis of a voxel at the edge of a shape, 1..8
-    int32_t storage;    // TYN_MEDIUM_STORAGE_*, of the atlas: what fills it reads this
+    int32_t storage;    // of the atlas: who fills it reads "medium.storage"
 } tyn_medium_params;
 
 // clang-format off

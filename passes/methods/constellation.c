@@ -164,17 +164,17 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
     TYN_LIST_PASSES,
-    &tyn_pass_voxel_distance,
-    &tyn_pass_validity_mask,
-    &tyn_pass_constellation,
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    "voxel_distance",
+    "validity_mask",
+    "constellation",
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
     NULL,
 };
 
@@ -224,9 +224,9 @@ const tyn_method tyn_method_constellation = {
     .info = {.name = "constellation",
              .summary = "one scattering under distant lights that stand for the environment, as "
                         "published in 2008",
-             .passes = passes,
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
              .single_only = true,
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

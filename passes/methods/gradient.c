@@ -258,29 +258,29 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_median_cut,
-    &tyn_pass_light_list,
-    &tyn_pass_gradient,
-    TYN_CELL_PASSES(TYN_PASS_ADDRESS),
-    TYN_LATTICE_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_merge,
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    "median_cut",
+    "light_list",
+    "gradient",
+    TYN_CELL_PASSES(TYN_PASS_NAME),
+    TYN_LATTICE_PASSES(TYN_PASS_NAME),
+    "merge",
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
     NULL,
 };
 
 const tyn_method tyn_method_gradient = {
     .info = {.name = "gradient",
              .summary = "one scattering from few samples with gradients, split where they err",
-             .passes = passes,
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
              .single_only = true,
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

@@ -80,18 +80,18 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_CELL_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_rsm,
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_CELL_PASSES(TYN_PASS_NAME),
+    "rsm",
     TYN_LPV_PASSES,
-    TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
-    TYN_FIELD_PASSES(TYN_PASS_ADDRESS),
+    TYN_GATHER_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
+    TYN_FIELD_PASSES(TYN_PASS_NAME),
     NULL,
 };
 
@@ -190,10 +190,10 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_lpv = {
     .info = {.name = "lpv",
              .summary = "light propagation volumes: scattered light moves on from cell to cell",
-             .passes = passes,
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

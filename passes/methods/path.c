@@ -327,18 +327,18 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_path,
-    &tyn_pass_path_probe,
-    &tyn_pass_path_balance,
-    &tyn_pass_path_fluxes,
-    &tyn_pass_path_distance,
-    &tyn_pass_gbuffer,
-    &tyn_pass_guides,
-    &tyn_pass_raymarch,
-    &tyn_pass_tonemap,
-    &tyn_pass_export,
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    "path",
+    "path_probe",
+    "path_balance",
+    "path_fluxes",
+    "path_distance",
+    "gbuffer",
+    "guides",
+    "raymarch",
+    "tonemap",
+    "export",
     NULL,
 };
 
@@ -373,7 +373,6 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_path = {
     .info = {.name = "path",
              .summary = "unbiased path tracing: the reference",
-             .passes = passes,
              .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
                         TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR |
                         TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE |
@@ -386,5 +385,6 @@ const tyn_method tyn_method_path = {
              .limits = limits},
     .reads_env_cdf = true,
     .batch = batch,
+    .passes = passes,
     .declare = declare,
 };

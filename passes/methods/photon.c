@@ -149,20 +149,20 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
-    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
-    TYN_CELL_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_CELL_PASSES(TYN_PASS_NAME),
     TYN_PHOTON_PASSES,
-    TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_light_points,
-    &tyn_pass_probe,
-    &tyn_pass_light_field,
+    TYN_GATHER_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
+    "light_points",
+    "probe",
+    "light_field",
     NULL,
 };
 
@@ -249,12 +249,12 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_photon = {
     .info = {.name = "photon",
              .summary = "photons in a coarse cache that is renewed from frame to frame",
-             .passes = passes,
              .outputs =
                  (TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE)) |
                  TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT,
              .traces_rays = true,
              .limits = limits},
     .reads_env_cdf = true,
+    .passes = passes,
     .declare = declare,
 };

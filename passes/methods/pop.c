@@ -196,23 +196,23 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),        TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS), TYN_SKY_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),          TYN_CELL_PASSES(TYN_PASS_ADDRESS),
-    TYN_LATTICE_PASSES(TYN_PASS_ADDRESS),       TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),       TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
-    TYN_FIELD_PASSES(TYN_PASS_ADDRESS),         NULL,
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),        TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME), TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),          TYN_CELL_PASSES(TYN_PASS_NAME),
+    TYN_LATTICE_PASSES(TYN_PASS_NAME),       TYN_GATHER_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),       TYN_PICTURE_PASSES(TYN_PASS_NAME),
+    TYN_FIELD_PASSES(TYN_PASS_NAME),         NULL,
 };
 
 const tyn_method tyn_method_pop = {
     .info = {.name = "pop",
              .summary = "principal ordinates: exact beams, one lattice for scattered light",
-             .passes = passes,
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .traces_rays = true, // virtual lights see what stands around them
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
              .limits = tyn_limits_pop},
+    .passes = passes,
     .declare = declare,
 };

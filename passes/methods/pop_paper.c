@@ -45,15 +45,15 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
-    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
     TYN_PROPAGATION_PASSES,
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
     NULL,
 };
 
@@ -89,8 +89,8 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_pop_paper = {
     .info = {.name = "pop-paper",
              .summary = "principal-ordinates propagation as published in 2014, cell by cell",
-             .passes = passes,
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

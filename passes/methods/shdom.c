@@ -65,15 +65,15 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_CELL_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_CELL_PASSES(TYN_PASS_NAME),
     TYN_SHDOM_PASSES,
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_probe,
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
+    "probe",
     NULL,
 };
 
@@ -169,10 +169,10 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_shdom = {
     .info = {.name = "shdom",
              .summary = "spherical harmonics and discrete ordinates (1998), to be compared with",
-             .passes = passes,
              .outputs = TYN_OUTPUT_PROBE |
                         (TYN_PICTURE_OUTPUTS &
                          ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_GUIDE_OUTPUTS)),
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

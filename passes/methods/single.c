@@ -52,11 +52,11 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     return tyn_graph_status(g);
 }
 
-static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
-    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
-    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
-    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
     NULL,
 };
 
@@ -81,10 +81,10 @@ static const tyn_limit limits[] = {
 const tyn_method tyn_method_single = {
     .info = {.name = "single",
              .summary = "light that has scattered exactly once",
-             .passes = passes,
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)TYN_GUIDE_OUTPUTS,
              .single_only = true,
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
              .limits = limits},
+    .passes = passes,
     .declare = declare,
 };

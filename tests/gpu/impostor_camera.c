@@ -6,13 +6,12 @@
 // The camera of a march after a frame in which it could have been made at x.
 static float taken_at(gpu_test *t, float x, tyn_hold hold)
 {
-    const struct camera_block camera = {.origin = {x, 2 * x, 0}, .half_width = 1, .size = {4, 4}};
-    const tyn_impostor_camera_params params = {.hold = hold};
+    const tyn_impostor_camera_params params = {
+        .camera = {.origin = {x, 2 * x, 0}, .half_width = 1, .size = {4, 4}}, .hold = hold};
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
-    refs[IMPOSTOR_CAMERA_PORT_CAMERA] = gpu_buffer(t, "camera", &camera, sizeof camera);
     refs[IMPOSTOR_CAMERA_PORT_TAKEN] =
-        tyn_graph_history_buffer(t->graph, "taken", sizeof camera, hold.key);
+        tyn_graph_history_buffer(t->graph, "taken", sizeof params.camera, hold.key);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_impostor_camera, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "taken", refs[IMPOSTOR_CAMERA_PORT_TAKEN], true);
     gpu_run(t);

@@ -47,7 +47,7 @@ static void layout(void **state)
         SIZE(tyn_scene_refs, 296),
         SIZE(tyn_job, 408),
         SIZE(tyn_picture, 24),
-        SIZE(tyn_picture_hook, 24),
+        SIZE(tyn_picture_hook, 48),
         SIZE(tyn_sources, 444),
         SIZE(tyn_rsm, 6268),
         SIZE(tyn_field, 56),
@@ -77,7 +77,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 7);
+    assert_int_equal(TYN_EXTEND_ABI, 8);
     assert_int_equal(changed, 0);
 }
 
@@ -257,12 +257,13 @@ static void hooks(void **state)
     (void)state;
     static const tyn_picture_hook half = {"added", reads_nothing, NULL};
     static const tyn_picture_hook whole = {"added", reads_nothing, change_nothing};
+    uint32_t count, own;
+    tyn_picture_hooks(&own);
     REFUSED(tyn_picture_hook_register(&half, &log), "are required");
     assert_int_equal(tyn_picture_hook_register(&whole, NULL), TYN_OK);
     REFUSED(tyn_picture_hook_register(&whole, &log), "there is a hook 'added' already");
-    uint32_t count;
-    assert_ptr_equal(tyn_picture_hooks(&count)[0], &whole);
-    assert_int_equal(count, 1);
+    assert_ptr_equal(tyn_picture_hooks(&count)[own], &whole);
+    assert_int_equal(count, own + 1);
 }
 
 int main(void)

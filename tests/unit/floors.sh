@@ -1,11 +1,11 @@
 #!/bin/sh
 # floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines, and that passes have tests.
 #
-# Floors, bottom to top: base < gpu, scene < io < graph < passes < job < light < solve < view < methods
-# < registry < frame < tools, samples, tests. A file includes its own folder and lower floors only; passes do not
-# include each other; what they share is in shaders/, which sees engine/scene, <tyndall/pass.h> and what else is plain data at
-# most; tools and samples see nothing but <tyndall/...>, a plugin and their shaders what is in shaders/ as well; public headers include lower tiers
-# only, those of <tyndall/extend/...> also what C and shaders share.
+# Floors, bottom to top: base < gpu, scene < io < graph < registry < frame < passes < methods/job < methods/light
+# < methods/solve < methods/view < methods < tools, samples, tests. A file includes its own folder and lower floors only;
+# passes do not include each other; what they share is in shaders/, which sees engine/scene, <tyndall/pass.h> and what else is
+# plain data at most; tools and samples see nothing but <tyndall/...>, a plugin and their shaders what is in shaders/ as well;
+# public headers include lower tiers only, those of <tyndall/extend/...> also what C and shaders share.
 set -eu
 
 # check ROOT: prints one line a fault; status 1 if there is any.
@@ -72,6 +72,8 @@ check()
         if (u ~ /^passes\//) { return 3 }
         return u ~ /^samples\// ? 11 : -1
     }
+    # A pass is a table for the graph: it sees no more than that does.
+    function reach(u) { return floor_of(u) == 3 ? 2.1 : floor_of(u) }
     function fault(text) {
         print FILENAME ":" FNR ": " text
         faults++
@@ -81,27 +83,27 @@ check()
         level["engine/gpu"] = level["engine/scene"] = 1
         level["engine/io"] = 1.5
         level["engine/graph"] = 2
+        level["engine/registry"] = 2.3
+        level["engine/frame"] = 2.6
         level["passes/methods/job"] = 4
         level["passes/methods/light"] = 5
         level["passes/methods/solve"] = 6
         level["passes/methods/view"] = 7
         level["passes/methods"] = 8
-        level["engine/registry"] = 9
-        level["engine/frame"] = 10
         level["tools"] = 11
         # Lowest floor that may see a public header, and the tier of the header itself.
         lowest["base.h"] = 0
         lowest["device.h"] = lowest["scene.h"] = lowest["io.h"] = 1
         lowest["pass.h"] = 1 # pipelines are made from its tables
-        lowest["context.h"] = lowest["outputs.h"] = lowest["registry.h"] = lowest["offline.h"] = lowest["light.glsl"] = 4
+        lowest["registry.h"] = 2.3
+        lowest["outputs.h"] = lowest["context.h"] = lowest["offline.h"] = lowest["light.glsl"] = 2.6
         lowest["extend/lattice_shape.h"] = 1
         lowest["extend/graph.h"] = 2
-        lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 4
+        lowest["extend/method.h"] = lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 2.3
+        lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 2.6
         lowest["extend/sources.h"] = lowest["extend/limits.h"] = 5
         lowest["extend/field.h"] = 6
         lowest["extend/view.h"] = 7
-        lowest["extend/method.h"] = 8
-        lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 9
         tier["base.h"] = 0
         tier["device.h"] = tier["scene.h"] = 1
         tier["io.h"] = tier["pass.h"] = tier["outputs.h"] = 2
@@ -145,14 +147,14 @@ check()
         } else if (floor_of(from) < 0) {
             fault("no floor is known for " from)
         } else if (to ~ /^public\//) {
-            if (lowest[substr(to, 8)] > floor_of(from)) { fault(from " is below <" name ">") }
+            if (lowest[substr(to, 8)] > reach(from)) { fault(from " is below <" name ">") }
         } else if (to == "shaders") {
-            if (floor_of(from) < 3 && from != "engine/graph") { fault(from " is below the shaders") }
+            if (floor_of(from) < 2 || from == "engine/registry") { fault(from " is below the shaders") }
         } else if (floor_of(from) == 3 && floor_of(to) == 3) {
             fault("passes do not include each other: " name)
         } else if (floor_of(to) < 0) {
             fault("no floor is known for " to)
-        } else if (floor_of(to) >= floor_of(from)) {
+        } else if (floor_of(to) >= reach(from)) {
             fault(from " includes " name " of " to ", which is not below it")
         }
     }
@@ -206,14 +208,22 @@ printf '%s\n' '#include "passes/a/a.h"' > shaders/x/bad.glsl
 printf '%s\n' '#include "scene/s.h"' '#include <tyndall/pass.h>' '#include "shaders/x/args.h"' > shaders/x/good.h
 printf '%s\n' '#include "a.h"' '#include "a_go.comp.h"' '#include "shaders/x/args.h"' '#include <tyndall/pass.h>' \
     '#include "base/hash.h"' '#include <math.h>' > passes/a/good.c
+mkdir -p engine/frame engine/registry passes/methods/light passes/methods/view
+: > engine/frame/f.h; : > passes/methods/light/l.h; : > passes/methods/view/v.h
+printf '%s\n' '#include "passes/a/a.h"' '#include "passes/methods/light/l.h"' '#include "shaders/x/args.h"' > engine/frame/bad.c
+printf '%s\n' '#include "frame/f.h"' > engine/registry/bad.c
+printf '%s\n' '#include "frame/f.h"' > passes/b/bad.c
+printf '%s\n' '#include "passes/methods/view/v.h"' > passes/methods/light/bad.c
+printf '%s\n' '#include "passes/methods/light/l.h"' '#include "passes/a/a.h"' '#include "frame/f.h"' \
+    '#include <tyndall/context.h>' > passes/methods/view/good.c
 mkdir -p "$self/tests/gpu" "$self/passes/tested" "$self/passes/unbuilt"
 : > tests/gpu/tested.c; : > tests/gpu/unbuilt.c; echo "'tested': [], 'barely': []" > tests/gpu/meson.build
 cd - > /dev/null
 status=0
 found=$(check "$self") || status=$?
 lines=$(printf '%s\n' "$found" | wc -l)
-if [ "$status" = 0 ] || [ "$lines" != 16 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
-    printf 'the check itself is broken: 16 faults expected, found %s:\n%s\n' "$lines" "$found"
+if [ "$status" = 0 ] || [ "$lines" != 21 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
+    printf 'the check itself is broken: 21 faults expected, found %s:\n%s\n' "$lines" "$found"
     exit 1
 fi
 status=0

@@ -1,7 +1,7 @@
 // views.c -- what views leave out: no triangle that is in them, most of those that are not. Exit 77: built without
 // Embree.
 #include "io_test.h"
-#include "passes/methods/light/shadow_cull.h"
+#include "frame/shadow_cull.h"
 #include "skip.h"
 #include "solids.h"
 #include <math.h>

@@ -1,43 +1,10 @@
 // job.c -- what methods give the graph of what a job asks for.
 #include <tyndall/extend/job.h>
-#include "passes/methods/job/output.h"
+#include "frame/output.h"
 #include "passes/export/export.h"
 #include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <string.h>
-
-const char *tyn_output_name(tyn_output which)
-{
-#define ROW(constant, bit, name, bytes, set) name,
-    static const char *const names[] = {TYN_OUTPUTS(ROW)};
-#undef ROW
-    for (uint32_t i = 0; i < TYN_NUM_OUTPUTS; i++) {
-        if (which == (tyn_output)(1u << i)) {
-            return names[i];
-        }
-    }
-    return "unknown";
-}
-
-#define LENT(constant, field, other, formats)                                                      \
-    {                                                                                              \
-        TYN_OUTPUT_##constant, offsetof(tyn_frame_images, field), #constant, "images." #field,     \
-            "host_" #field, #field "_image", other, formats                                        \
-    }
-const tyn_lent_image tyn_lent_images[TYN_NUM_LENT] = {
-    LENT(RADIANCE, radiance, VK_FORMAT_R16G16B16A16_SFLOAT, "rgba16f or rgba32f"),
-    LENT(TRANSMITTANCE, transmittance, VK_FORMAT_R16G16B16A16_SFLOAT, "rgba16f or rgba32f"),
-    LENT(DEPTH, depth, VK_FORMAT_R32_SFLOAT, "r32f or rgba32f"),
-};
-
-const tyn_image *tyn_lent(const tyn_frame_images *images, uint32_t index)
-{
-    const tyn_image *image;
-    memcpy(&image, (const char *)images + tyn_lent_images[index].at, sizeof image);
-    return image;
-}
 
 // Into the host's image, if it lent one for this.
 static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
@@ -55,11 +22,6 @@ static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, ty
         tyn_graph_add(g, &tyn_pass_export, &params, refs);
         tyn_graph_output(g, tyn_lent_images[i].made, refs[EXPORT_PORT_HOST], false);
     }
-}
-
-const char *tyn_job_output_name(tyn_output which)
-{
-    return which == TYN_OUTPUT_PROBE ? "points" : tyn_output_name(which);
 }
 
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
@@ -84,7 +46,7 @@ uint32_t tyn_job_hooks_read(const tyn_job *job)
 {
     uint32_t all = 0;
     for (uint32_t i = 0; i < job->num_hooks; i++) {
-        all |= job->hooks[i]->reads(job);
+        all |= job->hooks[i]->reads ? job->hooks[i]->reads(job) : 0;
     }
     return all;
 }

@@ -17,4 +17,4 @@ typedef struct tyn_light_list {
 tyn_light_list tyn_add_light_list(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
                                   uint32_t lights, bool suns_apart);
 
-#define TYN_LIST_PASSES &tyn_pass_env_importance, &tyn_pass_median_cut, &tyn_pass_light_list
+#define TYN_LIST_PASSES "env_importance", "median_cut", "light_list"

@@ -23,6 +23,3 @@
 #include "passes/lattice_source/lattice_source.h"
 #include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "passes/lattice_lamps/lattice_lamps.h"
-
-// For the tables of methods: TYN_SUN_PASSES(TYN_PASS_ADDRESS).
-#define TYN_PASS_ADDRESS(name) &tyn_pass_##name

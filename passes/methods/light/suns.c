@@ -1,5 +1,5 @@
 // suns.c -- beams of the strongest suns, and shadow maps of suns and lamps.
-#include "passes/methods/light/shadow_cull.h"
+#include "frame/shadow_cull.h"
 #include "passes/methods/light/sources.h"
 #include <tyndall/registry.h>
 #include <string.h>

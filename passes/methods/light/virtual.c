@@ -1,5 +1,5 @@
 // virtual.c -- virtual point lights: what surfaces reflect and emit.
-#include "passes/methods/light/shadow_cull.h"
+#include "frame/shadow_cull.h"
 #include "passes/methods/light/sources.h"
 #include <tyndall/registry.h>
 #include <math.h>

@@ -7,8 +7,7 @@
 #include "passes/lpv_reflect/lpv_reflect.h"
 #include "passes/lpv_scatter/lpv_scatter.h"
 
-#define TYN_LPV_PASSES                                                                             \
-    &tyn_pass_lpv_reflect, &tyn_pass_lpv_scatter, &tyn_pass_lpv_blockers, &tyn_pass_lpv
+#define TYN_LPV_PASSES "lpv_reflect", "lpv_scatter", "lpv_blockers", "lpv"
 
 // The cells of `s` with their unscattered light, and what surfaces reflect of it: after so many iterations.
 void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field);

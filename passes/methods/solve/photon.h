@@ -7,8 +7,7 @@
 #include "passes/photon_upsample/photon_upsample.h"
 #include "passes/photon_view/photon_view.h"
 
-#define TYN_PHOTON_PASSES                                                                          \
-    &tyn_pass_photon_trace, &tyn_pass_photon_cache, &tyn_pass_photon_upsample, &tyn_pass_photon_view
+#define TYN_PHOTON_PASSES "photon_trace", "photon_cache", "photon_upsample", "photon_view"
 
 // Light in the cells of `s`, which hold the medium alone: as moments, and towards the eye if a picture is wanted. All light of
 // the scene, but what `marched` has of suns and lamps until it has scattered (photon_trace.first).

@@ -9,8 +9,7 @@
 #include "passes/upsample/upsample.h"
 
 #define TYN_PROPAGATION_PASSES                                                                     \
-    &tyn_pass_propagate_rect, &tyn_pass_propagate_radial, &tyn_pass_residuum,                      \
-        &tyn_pass_merge_grids, &tyn_pass_upsample
+    "propagate_rect", "propagate_radial", "residuum", "merge_grids", "upsample"
 
 // The light of each sun, ordinate and lamp of `s` and of its virtual point lights, scattered or not; merged towards the
 // eye and upsampled with the medium as guide. `field` stays as it is where nothing shines.

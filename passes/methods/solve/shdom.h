@@ -5,7 +5,7 @@
 #include "passes/shdom/shdom.h"
 #include "passes/shdom_view/shdom_view.h"
 
-#define TYN_SHDOM_PASSES &tyn_pass_shdom, &tyn_pass_shdom_view
+#define TYN_SHDOM_PASSES "shdom", "shdom_view"
 
 // The cells of `s` with the unscattered light of its ordinates, among which are all suns. `probes` has moments, `picture`
 // light towards the eye without what scatters once of lamps and of the first `num_suns` suns; made if the job wants pictures.

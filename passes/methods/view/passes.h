@@ -7,8 +7,6 @@
 #include "passes/shade/shade.h"
 #include "passes/guides/guides.h"
 #include "passes/raymarch/raymarch.h"
-#include "passes/impostor/impostor.h"
-#include "passes/impostor_camera/impostor_camera.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/export/export.h"

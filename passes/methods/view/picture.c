@@ -78,12 +78,11 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     if (!frame->open_faces || params->repeat) {
         params->antialias = 0; // the box that the rays may miss has nothing at its faces
     }
-    const bool impostor =
-        job->refs.shown_camera.resource != 0; // of which `frame` has not the camera
-    if (!impostor) {
+    const bool other_camera = job->refs.shown_camera.resource != 0; // than `frame` has
+    if (!other_camera) {
         memcpy(params->whole, job->view->whole, sizeof params->whole);
     }
-    if (!params->repeat && !impostor) { // else it is to be seen everywhere
+    if (!params->repeat && !other_camera) { // else it is to be seen everywhere
         tyn_raymarch_window(params, &frame->camera);
         if (frame->empty) { // nothing to march through: a pixel, as no window would mean all
             params->first[0] = params->first[1] = 0;
@@ -91,7 +90,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
         }
     }
 
-    params->background = is_background_seen(job);
+    params->background = !other_camera && is_background_seen(job);
     params->surfaces = !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
     const uint32_t read = job->outputs | tyn_job_hooks_read(job);
     if (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)) {
@@ -100,10 +99,6 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->layers |= read & TYN_OUTPUT_DEPTH ? RAYMARCH_LAYER_DEPTH : 0;
     params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
     params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
-    if (impostor) {
-        params->background = 0;
-        params->layers |= RAYMARCH_LAYER_TRANSMITTANCE;
-    }
     if (job->refs.depth.resource) {
         memcpy(params->depth, job->host_depth, sizeof params->depth);
     }
@@ -140,35 +135,10 @@ static void add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance, ty
     tyn_job_output(g, job, TYN_OUTPUT_COMPOSITE, refs[COMPOSITE_PORT_COLOR]);
 }
 
-// The march as the view's camera sees it.
-static void show_impostor(tyn_graph *g, const tyn_job *job, tyn_picture *picture)
-{
-    tyn_impostor_params params;
-    tyn_settings_params(job->settings, &tyn_pass_impostor, &params);
-    params.width = job->view->width;
-    params.height = job->view->height;
-    params.background = is_background_seen(job);
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [IMPOSTOR_PORT_MEDIUM] = job->refs.medium,
-        [IMPOSTOR_PORT_TAKEN] = job->refs.camera,
-        [IMPOSTOR_PORT_CAMERA] = job->refs.shown_camera,
-        [IMPOSTOR_PORT_ENVIRONMENT] = job->refs.environment,
-        [IMPOSTOR_PORT_ENV_MAP] = job->refs.env_map,
-        [IMPOSTOR_PORT_MARCHED] = picture->radiance,
-        [IMPOSTOR_PORT_LEFT] = picture->transmittance,
-    };
-    tyn_graph_add(g, &tyn_pass_impostor, &params, refs);
-    picture->radiance = refs[IMPOSTOR_PORT_RADIANCE];
-    picture->transmittance = refs[IMPOSTOR_PORT_TRANSMITTANCE];
-}
-
 void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_picture picture)
 {
-    if (job->refs.shown_camera.resource) {
-        show_impostor(g, job, &picture);
-    }
     for (uint32_t i = 0; i < job->num_hooks; i++) {
-        if (job->hooks[i]->reads(job)) {
+        if (job->hooks[i]->reads && job->hooks[i]->reads(job)) {
             job->hooks[i]->declare(g, job, &picture);
         }
     }

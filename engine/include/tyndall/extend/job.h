@@ -34,8 +34,7 @@ typedef struct tyn_scene_refs {
         full_depth; // COMPOSITE: host depth as large as a colour image of twice the view; else {0}
     tyn_ref images[3]; // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
     tyn_ref light[3];  // LIGHT: host images of red, green and blue
-    // Where the picture is an impostor: the camera that it is shown by; `camera` then sees all of the media, from where the
-    // march was made last. Else {0}.
+    // Where a hook has put another in the place of `camera`, one that sees all of the media: that of the picture. Else {0}.
     tyn_ref shown_camera;
     // Tables of phase functions (phase_table.glsl); {0}: every phase function is one lobe.
     tyn_ref phases;
@@ -75,7 +74,8 @@ typedef struct tyn_picture {
 } tyn_picture;
 
 // What stands between march and composite: nodes that read the picture and hand it on, before outputs, composite and tone
-// curve are made of it. Hooks follow each other in the order in which they were registered.
+// curve are made of it. Hooks follow each other in the order in which they were registered. Each needs `prepare`, or `reads`
+// and `declare`.
 struct tyn_picture_hook {
     const char *name;
     // What it reads in this job, a set of TYN_OUTPUT_RADIANCE, _TRANSMITTANCE and _DEPTH; 0: it leaves the picture as it is.
@@ -83,6 +83,12 @@ struct tyn_picture_hook {
     uint32_t (*reads)(const tyn_job *job);
     // Adds its nodes and puts what they have made into `picture`. Not called where `reads` is 0.
     void (*declare)(tyn_graph *g, const tyn_job *job, tyn_picture *picture);
+    // Before the method declares: changes what it starts from (job->refs). NULL: nothing.
+    void (*prepare)(tyn_graph *g, tyn_job *job);
+    // The passes that it may declare, NULL at the end: methods that name the pass `follows`, and are registered with it or
+    // later, list them behind that one. NULL: they are not listed.
+    const char *follows;
+    const char *const *passes;
 };
 // What all hooks of the job read.
 TYN_API uint32_t tyn_job_hooks_read(const tyn_job *job);

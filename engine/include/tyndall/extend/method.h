@@ -9,10 +9,9 @@ extern "C" {
 
 typedef struct tyn_method {
     // traces_rays: wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
-    // Of methods that are registered (below) info.passes and info.plugin are filled by the registry, and limits that are
-    // NULL by one row that says so.
+    // info.passes and info.plugin are filled by the registry, and limits that are NULL by one row that says so.
     tyn_method_info info;
-    // Of methods that are registered: the names of the passes that it may declare, in the order of the frame, NULL at the
+    // The names of the passes that it may declare, in the order of the frame, NULL at the
     // end. The bundles of sources.h, field.h and view.h are lists for it: {TYN_SUN_PASSES(TYN_PASS_NAME), "mine", NULL}.
     const char *const *passes;
     bool reads_env_cdf; // wants refs.env_cdf

@@ -10,7 +10,7 @@
 
 // Rises whenever anything in the headers of this folder, in a struct that they hold, or in what the GLSL under shaders/ reads
 // changes its meaning, or a block of the GLSL its layout. A plugin of another number is refused when it is loaded.
-#define TYN_EXTEND_ABI 7u
+#define TYN_EXTEND_ABI 8u
 
 // clang-format off
 // The sizes of all structs that a plugin and the library both know, in one number: what differs in them is refused even if
@@ -70,6 +70,13 @@ extern __attribute__((visibility("default"))) const tyn_plugin tyn_plugin_entry;
 
 // The one thing that a plugin exports, and the functions that it calls:
 //   TYN_PLUGIN("diffusion", "a diffusion solver", passes, methods, hooks)
+// Where it is built into the library, the build defines TYN_BUILT_IN, the name of its table; it calls the library straight.
+#if defined(TYN_BUILT_IN)
+#define TYN_PLUGIN(its_name, its_summary, its_passes, its_methods, its_hooks) \
+    extern const tyn_plugin TYN_BUILT_IN; \
+    const tyn_plugin TYN_BUILT_IN = {TYN_EXTEND_ABI, TYN_VERSION, TYN_EXTEND_LAYOUT, its_name, its_summary, NULL, \
+                                     its_passes, its_methods, its_hooks};
+#else
 #define TYN_PLUGIN(its_name, its_summary, its_passes, its_methods, its_hooks) \
     static const tyn_calls *tyn_plugin_calls; \
     TYN_CALLS(TYN_CALL_DEFINE, TYN_CALL_DEFINE_VOID) \
@@ -89,4 +96,5 @@ extern __attribute__((visibility("default"))) const tyn_plugin tyn_plugin_entry;
     } \
     const tyn_plugin tyn_plugin_entry = {TYN_EXTEND_ABI, TYN_VERSION, TYN_EXTEND_LAYOUT, its_name, its_summary, &tyn_plugin_calls, \
                                          its_passes, its_methods, its_hooks};
+#endif
 // clang-format on

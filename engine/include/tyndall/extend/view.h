@@ -51,7 +51,7 @@ TYN_API void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in
 // The passes of these calls, for a method's table (method.h).
 #define TYN_GATHER_PASSES(X) X(scatter_lut), X(env_glow), X(merge)
 #define TYN_SURFACE_PASSES(X) X(gbuffer), X(shade), X(guides)
-#define TYN_PICTURE_PASSES(X) X(halve_depth), X(raymarch), X(impostor_camera), X(impostor), X(composite), X(tonemap), X(export)
+#define TYN_PICTURE_PASSES(X) X(halve_depth), X(raymarch), X(composite), X(tonemap), X(export)
 #define TYN_FIELD_PASSES(X) X(light_points), X(probe), X(light_field), X(balance)
 
 #ifdef __cplusplus

@@ -2,7 +2,7 @@
 //
 // Branches of the hierarchy outside the frustum are left out, those inside it are taken whole. What is left are
 // ranges of triangles; the smallest gaps between them are closed until they are few.
-#include "passes/methods/light/shadow_cull.h"
+#include "frame/shadow_cull.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,8 @@
-// impostor.c -- see impostor.h.
-#include "frame/impostor.h"
+// impostor.c -- a hook that shows a march of some frames ago as another camera sees it, until the view has changed too much.
 #include "base/hash.h"
 #include "passes/impostor/impostor.h"
 #include "passes/impostor_camera/impostor_camera.h"
-#include "passes/raymarch/raymarch.h"
+#include <tyndall/extend/method.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +10,7 @@ static bool marches(const tyn_job *job)
 {
     bool found = false;
     for (uint32_t i = 0; job->method->passes[i]; i++) {
-        found = found || job->method->passes[i] == &tyn_pass_raymarch;
+        found = found || !strcmp(job->method->passes[i]->name, "raymarch");
     }
     return found;
 }
@@ -101,30 +100,64 @@ static uint64_t key_of(const struct camera_block *c, double away, const float ex
     return key ? key : 1;
 }
 
-void tyn_frame_impostor(tyn_context *ctx, tyn_job *job)
+static void prepare(tyn_graph *g, tyn_job *job)
 {
     tyn_impostor_params params;
+    tyn_impostor_camera_params held = {.size = {job->view->width, job->view->height},
+                                       .hold = {.frames = UINT32_MAX}};
     double away;
     const float *extent = job->frame->medium.extent;
     if (!allows(job)) {
         return;
     }
     tyn_settings_params(job->settings, &tyn_pass_impostor, &params);
-    if (!params.on || !face(&job->frame->camera, extent, &ctx->impostor, &away)) {
+    if (!params.on || !face(&job->frame->camera, extent, &held.camera, &away)) {
         return;
     }
-    const uint64_t key = key_of(&ctx->impostor, away, extent, &params);
-    const tyn_impostor_camera_params held = {
-        .size = {job->view->width, job->view->height},
-        .hold = {.key = key, .frames = UINT32_MAX},
-    };
+    held.hold.key = key_of(&held.camera, away, extent, &params);
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [IMPOSTOR_CAMERA_PORT_CAMERA] = tyn_graph_upload_buffer(
-            ctx->graph, "impostor_view", &ctx->impostor, sizeof ctx->impostor, 0),
         [IMPOSTOR_CAMERA_PORT_TAKEN] =
-            tyn_graph_history_buffer(ctx->graph, "impostor_taken", sizeof ctx->impostor, key),
+            tyn_graph_history_buffer(g, "impostor_taken", sizeof held.camera, held.hold.key),
     };
-    tyn_graph_add(ctx->graph, &tyn_pass_impostor_camera, &held, refs);
+    tyn_graph_add(g, &tyn_pass_impostor_camera, &held, refs);
     job->refs.shown_camera = job->refs.camera;
     job->refs.camera = refs[IMPOSTOR_CAMERA_PORT_TAKEN];
 }
+
+static uint32_t reads(const tyn_job *job)
+{
+    return job->refs.shown_camera.resource ? TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE : 0;
+}
+
+// Over a host's picture only the medium is laid.
+static bool is_background_seen(const tyn_job *job)
+{
+    const struct env_block *env = &job->frame->environment;
+    return (env->has_map || tyn_is_lit(env->radiance)) && !job->view->no_background &&
+           !(job->outputs & TYN_OUTPUT_COMPOSITE);
+}
+
+// The march as the view's camera sees it.
+static void show(tyn_graph *g, const tyn_job *job, tyn_picture *picture)
+{
+    tyn_impostor_params params;
+    tyn_settings_params(job->settings, &tyn_pass_impostor, &params);
+    params.width = job->view->width;
+    params.height = job->view->height;
+    params.background = is_background_seen(job);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [IMPOSTOR_PORT_MEDIUM] = job->refs.medium,
+        [IMPOSTOR_PORT_TAKEN] = job->refs.camera,
+        [IMPOSTOR_PORT_CAMERA] = job->refs.shown_camera,
+        [IMPOSTOR_PORT_ENVIRONMENT] = job->refs.environment,
+        [IMPOSTOR_PORT_ENV_MAP] = job->refs.env_map,
+        [IMPOSTOR_PORT_MARCHED] = picture->radiance,
+        [IMPOSTOR_PORT_LEFT] = picture->transmittance,
+    };
+    tyn_graph_add(g, &tyn_pass_impostor, &params, refs);
+    picture->radiance = refs[IMPOSTOR_PORT_RADIANCE];
+    picture->transmittance = refs[IMPOSTOR_PORT_TRANSMITTANCE];
+}
+
+static const char *const passes[] = {"impostor_camera", "impostor", NULL};
+const tyn_picture_hook tyn_hook_impostor = {"impostor", reads, show, prepare, "raymarch", passes};

@@ -1,0 +1,5 @@
+// built_in.h -- what the library is built of: its own passes and methods, then its modules. The build makes the list.
+#pragma once
+#include <tyndall/extend/plugin.h>
+
+extern const tyn_plugin *const tyn_built_in[]; // NULL at the end; none has calls
