@@ -1,7 +1,7 @@
 // atlas.c -- all density grids in one 3D texture, so that shaders need no descriptor indexing.
 #include "frame/frame_scene.h"
 #include "base/half.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <string.h>
 
 uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume)

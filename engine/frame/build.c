@@ -1,6 +1,6 @@
 // build.c -- what a frame makes of its scene: tables where something has changed, and the job.
 #include "frame/context.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "frame/env_cdf.h"
 #include "gpu/device.h"
 #include "registry/registry.h"

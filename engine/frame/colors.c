@@ -1,7 +1,7 @@
 // colors.c -- all grids of colours in one 3D texture: emission, radiance of black bodies, albedo.
 #include "frame/frame_scene.h"
 #include "base/half.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <string.h>
 
 void tyn_colors_plan(tyn_atlas *colors, const tyn_scene *scene)

@@ -2,7 +2,7 @@
 #include "frame/context.h"
 #include "gpu/device.h"
 #include "registry/registry.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "base/given.h"
 #include <stdio.h>
 #include <stdlib.h>

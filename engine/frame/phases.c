@@ -1,6 +1,6 @@
 // phases.c -- the tables of phase functions that a frame's method knows, and one lobe instead where it does not.
 #include "frame/context.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "scene/phase.h"
 #include "scene/phase_table.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 // record.c -- prepares a frame, records it into the caller's command buffer, and gives out what it made.
 #include "frame/context.h"
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "gpu/device.h"
 #include "frame/output.h"
 #include "scene/check.h"

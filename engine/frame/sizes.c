@@ -1,7 +1,7 @@
 // sizes.c -- what of a frame must be as it was prepared: sizes, formats, counts and settings. All else are values.
 #include "frame/context.h"
-#include "base/hash.h"
 #include "frame/output.h"
+#include <tyndall/extend/hash.h>
 #include "registry/registry.h"
 
 static uint64_t add_image(uint64_t h, const tyn_image *image)

@@ -1,6 +1,6 @@
 // upload.c -- the scene of a frame as resources of the graph.
 #include "frame/context.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "frame/env_cdf.h"
 #include "frame/output.h"
 #include <string.h>

@@ -1,7 +1,7 @@
 // pipeline_blob.c -- the pipeline cache as bytes that a host keeps: the driver's, behind a header that tells whose they are
 // and whether they are whole. Vulkan lets a driver trust what it is given.
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "gpu/device.h"
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 // declare.c -- building the two lists: resources and nodes.
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

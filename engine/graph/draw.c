@@ -1,6 +1,6 @@
 // draw.c -- what a pass draws: raster kernels into attachments, by dynamic rendering.
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <stdio.h>
 
 // A draw that keeps what is there reads it; one that clears does not. Depth is tested against anyhow, but

@@ -1,6 +1,6 @@
 // kept.c -- what a compilation takes over from the one before: histories, uploads, what nodes made and where they worked.
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <stdlib.h>
 
 enum { HEAP_SLACK = 32 << 20 }; // bytes

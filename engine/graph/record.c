@@ -1,7 +1,7 @@
 // record.c -- one frame: uploads, the nodes that must run, readbacks; then what happened.
 #include "graph/internal.h"
 #include "base/clock.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // recorder.c -- what a pass records: dispatches and small transfers (draw.c: draws). The same code surveys
 // (what will be needed), makes pipelines, plans (for dumps) and records.
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <stdio.h>
 #include <string.h>
 

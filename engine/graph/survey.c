@@ -1,6 +1,6 @@
 // survey.c -- which nodes are needed, and what the structure of a declaration is: a dry run of its dispatches.
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 
 // A node is needed if an output or a needed node reads a version that it wrote, or a later version of
 // a resource that it changed.

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "scene/matrix.h"
 
 // Column density (density times metres) along a grid axis: that of the ray which meets most.

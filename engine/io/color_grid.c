@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "io/volume.h"
 
 void tyn_color_grid_finish(tyn_color_grid *colors)

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "io/hdr.h"
 #include "io/image.h"
 #include "io/primaries.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "io/gltf_media.h"
 #include "io/grid_place.h"
 #include "io/raw.h"

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 
 // ---- open, close ------------------------------------------------------------------------------
 

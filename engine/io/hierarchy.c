@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 
 enum { LEAF_TRIANGLES = 4 };
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "scene/matrix.h"
 
 void tyn_volume_finish(tyn_volume *volume)

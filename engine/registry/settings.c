@@ -1,7 +1,7 @@
 // settings.c -- values of pass parameters, by "pass.param".
 #include "registry/registry.h"
 #include "base/given.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 // Between nodes a table is linear in the cosine. Integrals over the sphere are sums over three points of Gauss in each
 // interval, exact for polynomials of the fourth degree times the table.
 #include "scene/phase_table.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <math.h>
 
 #define PI 3.14159265358979323846

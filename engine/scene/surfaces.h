@@ -1,14 +1,12 @@
 // surfaces.h -- what every owner of surfaces needs: freeing, bounds, content hash, checks.
 #pragma once
 #include <tyndall/scene.h>
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 
 void tyn_surfaces_free(tyn_surfaces *surfaces); // leaves them empty
 
 // World box of the vertices. False (and zeros) without triangles.
 bool tyn_surfaces_bounds(const tyn_surfaces *surfaces, float lo[3], float hi[3]);
-
-bool tyn_surfaces_emit(const tyn_surfaces *surfaces); // any of the triangles
 
 // Inline because file formats need it too. `hash`, or one of the whole content if that is 0; 0 without triangles.
 static inline uint64_t tyn_surfaces_hash(const tyn_surfaces *s)

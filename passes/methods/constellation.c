@@ -3,15 +3,11 @@
 //
 // Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).
 // Light scatters once. docs/constellation.md says what is as published and what is beyond it.
-#include "passes/methods/light/list.h"
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/constellation/constellation.h"
 #include "passes/validity_mask/validity_mask.h"
 #include "passes/voxel_distance/voxel_distance.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 #include <string.h>
 
 // The medium with its distance map.
@@ -76,8 +72,7 @@ static void set_medium(tyn_constellation_params *p, const tyn_job *job)
     p->mode = block->mode;
     p->emissive = job->frame->emissive;
     memcpy(p->extent, block->extent, sizeof p->extent);
-    p->slices = tyn_constellation_slices(block, p->slice,
-                                         tyn_raymarch_longest_step(job->frame->majorant, 0, block));
+    p->slices = tyn_constellation_slices(block, p->slice, tyn_longest_step(job->frame, 0));
 }
 
 // The surfaces that the camera sees, in the light of suns, lamps and the VPLs that these make, which the medium dims.
@@ -170,7 +165,7 @@ static const char *const passes[] = {
     TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
     TYN_LAMP_PASSES(TYN_PASS_NAME),
     TYN_SURFACE_PASSES(TYN_PASS_NAME),
-    TYN_LIST_PASSES,
+    TYN_LIST_PASSES(TYN_PASS_NAME),
     "voxel_distance",
     "validity_mask",
     "constellation",

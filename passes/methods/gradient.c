@@ -4,15 +4,9 @@
 // Samples are split where the light that they stand for is not as they say; the march reads the field that is made of them
 // (docs/gradient.md). An environment shines as suns and distant lights, past what surfaces hide of it. Samples may read what has
 // scattered more than once from the lattice of method "pop".
-#include "passes/methods/light/list.h"
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/gradient/gradient.h"
-#include "passes/methods/solve/lattice.h"
-#include "scene/surfaces.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 
@@ -131,9 +125,9 @@ static void add_lights(tyn_graph *g, const tyn_job *job, bool multiple, tyn_sour
 // and sky that comes straight, which samples follow.
 static tyn_ref add_scattered(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_field *solved)
 {
-    tyn_lattice_params lattice;
-    tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
-    tyn_add_cells(g, job, lattice.shape.cells, "lattice.cells", s);
+    tyn_setting cells;
+    tyn_settings_get(job->settings, "lattice.cells", &cells, job->log);
+    tyn_add_cells(g, job, (int32_t)cells.value, "lattice.cells", s);
     tyn_solve_lattice(g, job, s, solved);
     tyn_sources before = *s;
     before.sky = (tyn_sky){{0}};

@@ -3,13 +3,9 @@
 // Light that has not scattered is marched sharply, as in "single". What it scatters, and what surfaces reflect of it, starts
 // in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (docs/lpv.md). An environment shines along
 // principal ordinates; among surfaces its mean enters the lattice from all sides.
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/methods/solve/lpv.h"
-#include "scene/surfaces.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 
 static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE;
 

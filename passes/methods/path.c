@@ -8,7 +8,7 @@
 #include "passes/path_distance/path_distance.h"
 #include "passes/gbuffer/gbuffer.h"
 #include "passes/guides/guides.h"
-#include "passes/methods/job/path_scene.h"
+#include <tyndall/extend/path_scene.h>
 #include "shaders/path/path_args.h"
 #include "passes/methods/view/view.h"
 #include <tyndall/registry.h>

@@ -3,12 +3,9 @@
 // Photons of all lights are traced through the medium, a generation in each frame; a coarse cache holds the light of the last
 // ones, as lobes about its net flux. It is upsampled with the medium as guide, and marched, with what suns and lamps have
 // scattered forward alone along their beams (docs/photon.md).
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/methods/solve/photon.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 

@@ -11,7 +11,6 @@
 #include "passes/methods/pop_limits.h"
 #include <tyndall/extend/method.h>
 #include "passes/methods/solve/lattice.h"
-#include "scene/surfaces.h"
 #include "passes/methods/view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>

@@ -4,12 +4,9 @@
 // what all of them send to the eye is merged into one grid, upsampled with the medium as guide and
 // marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
 // method "pop".
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/methods/solve/propagation.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {

@@ -2,12 +2,9 @@
 //
 // Suns, lamps and principal ordinates of an environment light the cells of a lattice; what scatters is solved for there in a
 // few bands of spherical harmonics. The march adds what scatters once of suns and lamps, sharply (docs/shdom.md).
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/methods/solve/shdom.h"
-#include "passes/methods/view/view.h"
-#include <tyndall/registry.h>
 
 static tyn_result declare(tyn_graph *g, const tyn_job *given)
 {

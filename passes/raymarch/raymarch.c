@@ -74,19 +74,6 @@ static const struct {
 };
 enum { NUM_LAYERS = sizeof(layers) / sizeof(layers[0]) };
 
-float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_block *medium)
-{
-    const float *extent = medium->extent;
-    float side = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
-    float voxel = fminf(medium->voxel[0], fminf(medium->voxel[1], medium->voxel[2]));
-    // Light that falls off as e^-x over a step of depth x comes out x^2 / 24 too dark. Voxels resolve it
-    // as well as the medium itself; a medium of few or one voxel is no reason for long steps.
-    bool homogeneous = medium->size[0] * medium->size[1] * medium->size[2] == 1;
-    float shortest = homogeneous ? side / 512.0f : fminf(voxel, side / 64.0f);
-    float by_depth = sigma_t > 0.0f ? fmaxf(0.1f / sigma_t, shortest) : side;
-    return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
-}
-
 // Of the whole picture, pixels.
 static tyn_extent whole_of(const tyn_raymarch_params *p)
 {

@@ -49,11 +49,6 @@ typedef struct tyn_raymarch_params {
     float depth[4];  // of the host's depth: tyn_job.host_depth
 } tyn_raymarch_params;
 
-// The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice
-// of cells of `dx` metres (0 = none): the light changes no faster than cells and depth allow. Matters for
-// media of few voxels; else steps are as long as voxels.
-float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_block *medium);
-
 // Sets first, end and across to a window that holds every pixel from which a ray may meet the media's box. It begins where
 // a part of the picture, at a multiple of RAYMARCH_NODES pixels, has the same nodes as the whole (raymarch_sparse.glsl).
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);

@@ -3,6 +3,7 @@
 #include <tyndall/pass.h>
 #include "shaders/path/path_args.h"
 #include "shaders/surfaces/surface_args.h"
+#include <string.h>
 
 // Of every tracing pass. What is not in the parameter table is set by the method.
 typedef struct tyn_path_params {
@@ -73,22 +74,20 @@ static inline path_split path_split_work(const tyn_path_params *p, uint32_t elem
 // Arguments of a tracing kernel but for `first`, `num` and `slots`.
 static inline struct path_args path_trace_args(const tyn_path_params *p)
 {
-    return (struct path_args){
-        .first_sample = p->first_sample + p->sample_offset,
-        .num_samples = p->num_samples,
-        .seed = p->seed,
-        .num_lights = p->num_lights,
-        .max_depth = p->max_depth ? p->max_depth : UINT32_MAX,
-        .rr_depth = p->rr_depth ? p->rr_depth : 4,
-        .max_steps = (uint32_t)p->max_steps,
-        .sigma_guess = p->sigma_guess,
-        .stretch = p->stretch,
-        .world = {{p->world[0][0], p->world[0][1], p->world[0][2]},
-                  {p->world[1][0], p->world[1][1], p->world[1][2]},
-                  {p->world[2][0], p->world[2][1], p->world[2][2]}},
-        .box_lo = {p->box[0][0], p->box[0][1], p->box[0][2]},
-        .box_hi = {p->box[1][0], p->box[1][1], p->box[1][2]},
-    };
+    struct path_args args = {0};
+    args.first_sample = p->first_sample + p->sample_offset;
+    args.num_samples = p->num_samples;
+    args.seed = p->seed;
+    args.num_lights = p->num_lights;
+    args.max_depth = p->max_depth ? p->max_depth : UINT32_MAX;
+    args.rr_depth = p->rr_depth ? p->rr_depth : 4;
+    args.max_steps = (uint32_t)p->max_steps;
+    args.sigma_guess = p->sigma_guess;
+    args.stretch = p->stretch;
+    memcpy(args.world, p->world, sizeof args.world);
+    memcpy(args.box_lo, p->box[0], sizeof args.box_lo);
+    memcpy(args.box_hi, p->box[1], sizeof args.box_hi);
+    return args;
 }
 
 static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)

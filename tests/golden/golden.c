@@ -7,7 +7,7 @@
 // must make the same bits. Another may round otherwise: there the pictures, as means over 4x4 pixels, must be within
 // 1e-4 (relative L1) of those in FOLDER/METHOD.exr, a sheet with a row for each scene. --write makes both anew.
 #include "base/half.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "gpu_test.h"
 #include "offline_frame.h"
 #include "picture.h"

@@ -7,7 +7,7 @@
 // nodes have scratch, and what lies in the place of what a node writes is lost.
 #include "fake_vulkan.h"
 #include "graph/internal.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -3,7 +3,7 @@
 #include "bound.h"
 #include "graph/internal.h"
 #include "base/half.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "shaders/common/counters.h"
 #include "skip.h"
 #include <stdio.h>

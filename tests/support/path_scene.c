@@ -1,6 +1,6 @@
 // path_scene.c -- small scenes for the path tracer and runs of it.
 #include "path_scene.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "frame/env_cdf.h"
 #include "vector.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 // references.c -- see references.h.
 #include "references.h"
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "numbers.h"
 #include "registry/registry.h"
 #include <math.h>

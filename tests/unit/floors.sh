@@ -97,10 +97,12 @@ check()
         lowest["pass.h"] = 1 # pipelines are made from its tables
         lowest["registry.h"] = 2.3
         lowest["outputs.h"] = lowest["context.h"] = lowest["offline.h"] = lowest["light.glsl"] = 2.6
-        lowest["extend/lattice_shape.h"] = 1
+        lowest["extend/hash.h"] = 0
+        lowest["extend/lattice_shape.h"] = lowest["extend/map_light.h"] = 1
         lowest["extend/graph.h"] = 2
         lowest["extend/method.h"] = lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 2.3
         lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 2.6
+        lowest["extend/path_scene.h"] = 4
         lowest["extend/sources.h"] = lowest["extend/limits.h"] = 5
         lowest["extend/field.h"] = 6
         lowest["extend/view.h"] = 7
@@ -110,10 +112,13 @@ check()
         tier["context.h"] = 3
         tier["registry.h"] = 4
         tier["offline.h"] = 5
+        tier["extend/hash.h"] = 0
+        tier["extend/map_light.h"] = 2
         tier["extend/lattice_shape.h"] = 3
         tier["extend/graph.h"] = 4
         tier["extend/refs.h"] = tier["extend/frame_scene.h"] = 5
         tier["extend/job.h"] = 6
+        tier["extend/path_scene.h"] = 7
         tier["extend/sources.h"] = tier["extend/limits.h"] = 7
         tier["extend/field.h"] = 8
         tier["extend/view.h"] = 9
@@ -190,7 +195,7 @@ mkdir -p "$self/engine/include/tyndall" "$self/engine/base" "$self/engine/gpu" "
     "$self/engine/graph" "$self/passes/a" "$self/passes/b" "$self/shaders/x" "$self/tools"
 cd "$self"
 for f in base device scene pass context; do : > engine/include/tyndall/$f.h; done
-: > engine/base/hash.h; : > engine/gpu/gpu.h; : > engine/scene/s.h; : > engine/graph/graph.h
+: > engine/base/half.h; : > engine/gpu/gpu.h; : > engine/scene/s.h; : > engine/graph/graph.h
 : > passes/a/a.h; : > passes/b/b.h; : > shaders/x/args.h; : > passes/a/a_go.comp
 printf '%s\n' '#include "gpu/gpu.h"' '#include <tyndall/device.h>' > engine/base/bad.c
 printf '%s\n' '#include "scene/s.h"' '#include "graph/graph.h"' '#include "shaders/x/args.h"' > engine/gpu/bad.c
@@ -203,11 +208,11 @@ printf '%s\n' '#include "job.h"' > engine/include/tyndall/extend/graph.h
 printf '%s\n' '#include "../pass.h"' '#include "shaders/x/args.h"' > engine/include/tyndall/extend/refs.h
 printf '%s\n' '#include "shaders/x/args.h"' '#include <tyndall/extend/job.h>' > samples/plugin/good.c
 printf '%s\n' '#include "shaders/x/args.h"' > samples/embed/bad.c
-printf '%s\n' '#include "base/hash.h"' '#include <passes/a/a.h>' > tools/bad.c
+printf '%s\n' '#include "base/half.h"' '#include <passes/a/a.h>' > tools/bad.c
 printf '%s\n' '#include "passes/a/a.h"' > shaders/x/bad.glsl
 printf '%s\n' '#include "scene/s.h"' '#include <tyndall/pass.h>' '#include "shaders/x/args.h"' > shaders/x/good.h
 printf '%s\n' '#include "a.h"' '#include "a_go.comp.h"' '#include "shaders/x/args.h"' '#include <tyndall/pass.h>' \
-    '#include "base/hash.h"' '#include <math.h>' > passes/a/good.c
+    '#include "base/half.h"' '#include <math.h>' > passes/a/good.c
 mkdir -p engine/frame engine/registry passes/methods/light passes/methods/view
 : > engine/frame/f.h; : > passes/methods/light/l.h; : > passes/methods/view/v.h
 printf '%s\n' '#include "passes/a/a.h"' '#include "passes/methods/light/l.h"' '#include "shaders/x/args.h"' > engine/frame/bad.c

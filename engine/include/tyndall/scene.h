@@ -327,6 +327,7 @@ TYN_API tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log);
 
 // Union of the world boxes of all shapes; without shapes, of the surfaces' vertices. False (and zeros) if
 // there is neither.
+TYN_API bool tyn_surfaces_emit(const tyn_surfaces *surfaces); // any of the triangles
 TYN_API bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3]);
 
 // The camera used when a scene has none: the bounding sphere of the media, without media of the

@@ -1,5 +1,5 @@
-// path_scene.c -- see path_scene.h.
-#include "passes/methods/job/path_scene.h"
+// path_scene.c -- see tyndall/extend/path_scene.h.
+#include <tyndall/extend/path_scene.h>
 #include "scene/phase.h"
 #include "shaders/common/bundles.h"
 #include <math.h>

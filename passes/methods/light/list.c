@@ -1,5 +1,7 @@
-// list.c -- see list.h.
-#include "passes/methods/light/list.h"
+// list.c -- all lights of a scene in one list.
+#include "passes/methods/light/sources.h"
+#include "passes/light_list/light_list.h"
+#include "passes/median_cut/median_cut.h"
 #include <string.h>
 
 // The constellation of the environment, its suns among its lights or `suns_apart`; {0} if nothing shines from there.

@@ -193,6 +193,45 @@ void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm)
     add_rsm(g, job, NULL, rsm);
 }
 
+// Rows M -> clip as rows world -> clip.
+static void from_world(const tyn_job *job, const float rows[4][4], tyn_vec4 clip[4])
+{
+    const float *m = job->frame->m_from_world; // column-major
+    for (int r = 0; r < 4; r++) {
+        for (int c = 0; c < 4; c++) {
+            clip[r][c] = c == 3 ? rows[r][3] : 0;
+            for (int k = 0; k < 3; k++) {
+                clip[r][c] += rows[r][k] * m[4 * c + k];
+            }
+        }
+    }
+}
+
+void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_view *views, uint32_t count,
+                       uint32_t texels, tyn_rsm_refs *maps)
+{
+    tyn_rsm_params params;
+    tyn_settings_params(job->settings, &tyn_pass_rsm, &params);
+    params.num_triangles = job->frame->num_triangles;
+    for (uint32_t i = 0; i < count; i++) {
+        struct rsm_tile tile = {.texels = texels};
+        tyn_vec4 clip[4];
+        for (int a = 0; a < 2; a++) {
+            const uint32_t end = views[i].offset[a] + texels;
+            tile.offset[a] = views[i].offset[a];
+            params.size[a] = params.size[a] > end ? params.size[a] : end;
+        }
+        from_world(job, views[i].rows, clip);
+        tyn_rsm_add(&params, &tile, TYN_SHADOW_SUN, (const tyn_vec4 *)clip, TYN_LIGHTS_MAX - 1, 0);
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RSM_PORT_SUNS] = job->refs.suns, [RSM_PORT_LIGHTS] = job->refs.lights};
+    tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
+    tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
+    tyn_take(refs, RSM_PORT_RSM_FLUX, *maps);
+}
+
 void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     if (!job->frame->num_triangles) {

@@ -1,7 +1,6 @@
 // lpv.c -- see lpv.h.
 #include "passes/methods/solve/lpv.h"
 #include <tyndall/extend/limits.h>
-#include <tyndall/registry.h>
 #include <string.h>
 
 // What surfaces reflect of suns and lamps; {0} if there is nothing of that.
@@ -50,48 +49,20 @@ static tyn_ref add_scattered(tyn_graph *g, const tyn_job *job, const tyn_sources
     return refs[LPV_SCATTER_PORT_SCATTERED];
 }
 
-// Rows M -> clip as rows world -> clip.
-static void from_world(const tyn_job *job, const float rows[4][4], tyn_vec4 clip[4])
-{
-    const float *m = job->frame->m_from_world; // column-major
-    for (int r = 0; r < 4; r++) {
-        for (int c = 0; c < 4; c++) {
-            clip[r][c] = c == 3 ? rows[r][3] : 0;
-            for (int k = 0; k < 3; k++) {
-                clip[r][c] += rows[r][k] * m[4 * c + k];
-            }
-        }
-    }
-}
-
 // Surfaces as six maps along the axes see them, as blockers.
 static tyn_ref add_blockers(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
 {
     tyn_lpv_blockers_params params;
     tyn_settings_params(job->settings, &tyn_pass_lpv_blockers, &params);
     params.shape = s->lattice.shape;
-    const uint32_t texels = (uint32_t)params.texels;
-    tyn_rsm_params maps;
-    tyn_settings_params(job->settings, &tyn_pass_rsm, &maps);
-    maps.size[0] = 3 * texels;
-    maps.size[1] = 2 * texels;
-    maps.num_triangles = job->frame->num_triangles;
+    tyn_rsm_view views[TYN_LPV_BLOCKERS_MAPS];
     for (uint32_t i = 0; i < TYN_LPV_BLOCKERS_MAPS; i++) {
-        struct rsm_tile tile = {.texels = texels};
-        float rows[4][4];
-        tyn_vec4 clip[4];
-        tyn_lpv_blockers_view(&params, i, tile.offset, rows);
-        from_world(job, (const float(*)[4])rows, clip);
-        // Where surfaces are and their planes is asked for alone: not what they reflect.
-        tyn_rsm_add(&maps, &tile, TYN_SHADOW_SUN, (const tyn_vec4 *)clip, TYN_LIGHTS_MAX - 1, 0);
+        tyn_lpv_blockers_view(&params, i, views[i].offset, views[i].rows);
     }
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [RSM_PORT_SUNS] = job->refs.suns, [RSM_PORT_LIGHTS] = job->refs.lights};
-    tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
-    tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
-    tyn_graph_add(g, &tyn_pass_rsm, &maps, refs);
+    tyn_rsm_refs maps;
+    tyn_add_rsm_views(g, job, views, TYN_LPV_BLOCKERS_MAPS, (uint32_t)params.texels, &maps);
     tyn_ref own[TYN_MAX_PORTS] = {{0}};
-    memcpy(&own[LPV_BLOCKERS_PORT_RSM_FLUX], &refs[RSM_PORT_RSM_FLUX], sizeof(tyn_rsm_refs));
+    tyn_connect(own, LPV_BLOCKERS_PORT_RSM_FLUX, maps);
     tyn_graph_add(g, &tyn_pass_lpv_blockers, &params, own);
     return own[LPV_BLOCKERS_PORT_BLOCKING];
 }

@@ -1,7 +1,6 @@
 // lpv.h -- the solver of method "lpv": power moves on from cell to cell of one lattice.
 #pragma once
 #include <tyndall/extend/field.h>
-#include "passes/methods/light/sources.h"
 #include "passes/lpv/lpv.h"
 #include "passes/lpv_blockers/lpv_blockers.h"
 #include "passes/lpv_reflect/lpv_reflect.h"

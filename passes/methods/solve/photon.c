@@ -1,10 +1,9 @@
 // photon.c -- see photon.h.
 #include "passes/methods/solve/photon.h"
-#include "base/hash.h"
-#include "passes/methods/job/path_scene.h"
-#include "scene/env_suns.h"
+#include <tyndall/extend/hash.h>
+#include <tyndall/extend/path_scene.h>
+#include <tyndall/extend/map_light.h>
 #include "shaders/photon/photon_args.h"
-#include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 

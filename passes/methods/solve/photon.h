@@ -1,7 +1,6 @@
 // photon.h -- the solver of method "photon": caches of photons, renewed a few in a frame.
 #pragma once
 #include <tyndall/extend/field.h>
-#include "passes/methods/light/sources.h"
 #include "passes/photon_cache/photon_cache.h"
 #include "passes/photon_trace/photon_trace.h"
 #include "passes/photon_upsample/photon_upsample.h"

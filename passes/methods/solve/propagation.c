@@ -1,7 +1,5 @@
 // propagation.c -- see propagation.h.
 #include "passes/methods/solve/propagation.h"
-#include "passes/raymarch/raymarch.h"
-#include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 // propagation.h -- the solver of method "pop-paper": light moves from cell to cell of its own aligned grid.
 #pragma once
 #include <tyndall/extend/field.h>
-#include "passes/methods/light/sources.h"
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_rect/propagate_rect.h"

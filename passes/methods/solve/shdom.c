@@ -1,6 +1,5 @@
 // shdom.c -- see shdom.h.
 #include "passes/methods/solve/shdom.h"
-#include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 

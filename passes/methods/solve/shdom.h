@@ -1,7 +1,6 @@
 // shdom.h -- the solver of method "shdom": spherical harmonics and discrete ordinates on the lattice.
 #pragma once
 #include <tyndall/extend/field.h>
-#include "passes/methods/light/sources.h"
 #include "passes/shdom/shdom.h"
 #include "passes/shdom_view/shdom_view.h"
 

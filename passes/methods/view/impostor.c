@@ -1,5 +1,5 @@
 // impostor.c -- a hook that shows a march of some frames ago as another camera sees it, until the view has changed too much.
-#include "base/hash.h"
+#include <tyndall/extend/hash.h>
 #include "passes/impostor/impostor.h"
 #include "passes/impostor_camera/impostor_camera.h"
 #include <tyndall/extend/method.h>

@@ -45,6 +45,22 @@ static bool is_background_seen(const tyn_job *job)
     return surroundings && !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
 }
 
+// Light changes no faster than cells and depth allow. Matters for media of few voxels; else steps are as long as voxels.
+float tyn_longest_step(const tyn_frame_scene *frame, float cell)
+{
+    const struct medium_block *medium = &frame->medium;
+    const float sigma_t = frame->majorant;
+    const float *extent = medium->extent;
+    float side = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    float voxel = fminf(medium->voxel[0], fminf(medium->voxel[1], medium->voxel[2]));
+    // Light that falls off as e^-x over a step of depth x comes out x^2 / 24 too dark. Voxels resolve it
+    // as well as the medium itself; a medium of few or one voxel is no reason for long steps.
+    bool homogeneous = medium->size[0] * medium->size[1] * medium->size[2] == 1;
+    float shortest = homogeneous ? side / 512.0f : fminf(voxel, side / 64.0f);
+    float by_depth = sigma_t > 0.0f ? fmaxf(0.1f / sigma_t, shortest) : side;
+    return fminf(fminf(by_depth, side / 8.0f), cell > 0.0f ? cell : side);
+}
+
 static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
                              const tyn_view_inputs *in)
 {
@@ -69,7 +85,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->height = job->view->height;
     memcpy(params->extent, block->extent, sizeof params->extent);
     params->majorant = frame->majorant;
-    params->longest_step = tyn_raymarch_longest_step(params->majorant, in->field->cell, block);
+    params->longest_step = tyn_longest_step(frame, in->field->cell);
     params->num_shapes = block->num_shapes;
     params->kind = kind_of_shapes(frame, block->num_shapes);
     params->closed = !sunlight_enters_through_medium(frame, in->sources->num_suns) ||

@@ -8,6 +8,7 @@
 // X(result, name, parameters, arguments); V for those without a result.
 #pragma once
 #include "method.h"
+#include "path_scene.h"
 
 // clang-format off
 #define TYN_CALLS(X, V) \
@@ -45,6 +46,7 @@
     X(double, tyn_phase_mean_cosine, (tyn_phase phase), (phase)) \
     X(double, tyn_phase_delta_fraction, (tyn_phase phase), (phase)) \
     X(double, tyn_light_solid_angle, (const tyn_light *light), (light)) \
+    X(bool, tyn_surfaces_emit, (const tyn_surfaces *surfaces), (surfaces)) \
     X(bool, tyn_scene_bounds, (const tyn_scene *scene, float lo[3], float hi[3]), (scene, lo, hi)) \
     /* graph.h */ \
     X(tyn_ref, tyn_graph_upload_buffer, \
@@ -86,6 +88,10 @@
     X(bool, tyn_has_walls, (const tyn_frame_scene *frame), (frame)) \
     X(bool, tyn_is_periodic, (const tyn_frame_scene *frame), (frame)) \
     X(bool, tyn_can_trace, (const tyn_job *job), (job)) \
+    /* path_scene.h */ \
+    V(tyn_path_scene, (const tyn_job *job, tyn_path_params *params), (job, params)) \
+    V(tyn_connect_path_scene, (tyn_ref *refs, const tyn_job *job, tyn_ref bricks), (refs, job, bricks)) \
+    X(double, tyn_path_cost_ns, (const tyn_job *job, bool homogeneous), (job, homogeneous)) \
     /* sources.h */ \
     V(tyn_add_medium, (tyn_graph *g, const tyn_job *job, tyn_sources *s), (g, job, s)) \
     V(tyn_add_beams, (tyn_graph *g, const tyn_job *job, tyn_sources *s), (g, job, s)) \
@@ -96,6 +102,14 @@
         (g, job, first_sun, can_split, s)) \
     V(tyn_add_surroundings, (tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s), \
         (g, job, can_split, s)) \
+    V(tyn_add_whole_sky, (tyn_graph *g, const tyn_job *job, tyn_sources *s), (g, job, s)) \
+    X(bool, tyn_average_medium, \
+        (tyn_graph *g, const tyn_job *job, const uint32_t dims[3], tyn_medium_refs *medium, float texel[3]), \
+        (g, job, dims, medium, texel)) \
+    V(tyn_add_columns, (tyn_graph *g, const tyn_job *job, int32_t cells, tyn_sources *s), (g, job, cells, s)) \
+    X(tyn_light_list, tyn_add_light_list, \
+        (tyn_graph *g, const tyn_job *job, const tyn_sources *s, uint32_t lights, bool suns_apart), \
+        (g, job, s, lights, suns_apart)) \
     X(tyn_ref, tyn_add_map_sums, (tyn_graph *g, const tyn_job *job), (g, job)) \
     V(tyn_add_cells, (tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting, tyn_sources *s), \
         (g, job, cells, setting, s)) \
@@ -103,6 +117,9 @@
     X(uint32_t, tyn_radial_groups, (const tyn_lamps *lamps), (lamps)) \
     X(bool, tyn_vpls_bounce, (const tyn_job *job), (job)) \
     V(tyn_add_rsm, (tyn_graph *g, const tyn_job *job, tyn_rsm *rsm), (g, job, rsm)) \
+    V(tyn_add_rsm_views, \
+        (tyn_graph *g, const tyn_job *job, const tyn_rsm_view *views, uint32_t count, uint32_t texels, \
+            tyn_rsm_refs *maps), (g, job, views, count, texels, maps)) \
     /* field.h */ \
     V(tyn_solve_lattice, (tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field), \
         (g, job, s, field)) \
@@ -111,6 +128,9 @@
     V(tyn_add_glow, (tyn_graph *g, const tyn_job *job, tyn_view_inputs *in), (g, job, in)) \
     V(tyn_gather, (tyn_graph *g, const tyn_job *job, tyn_view_inputs *in), (g, job, in)) \
     V(tyn_add_surfaces, (tyn_graph *g, const tyn_job *job, tyn_view_inputs *in), (g, job, in)) \
+    V(tyn_add_surfaces_apart, (tyn_graph *g, const tyn_job *job, tyn_sources s, tyn_view_inputs *in), \
+        (g, job, s, in)) \
+    X(float, tyn_longest_step, (const tyn_frame_scene *frame, float cell), (frame, cell)) \
     X(tyn_picture, tyn_add_march, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \
     V(tyn_add_results, (tyn_graph *g, const tyn_job *job, tyn_picture picture), (g, job, picture)) \
     V(tyn_add_picture, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \

@@ -64,8 +64,8 @@ typedef struct tyn_frame_scene {
     float near_lo[3], near_hi[3];
     // World space -> M: a turn and a move, column-major.
     float m_from_world[16];
+    const struct tyn_map_light *map; // map_light.h
     // The engine's own, for the calls of sources.h: not to be looked into.
-    const struct tyn_map_light *map;
     const struct surface_range *below;
     struct tyn_views_seen *seen;
 } tyn_frame_scene;

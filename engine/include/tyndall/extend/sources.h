@@ -109,6 +109,9 @@ TYN_API void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, b
 // The environment where a lattice carries on what it scatters: ordinates for all but the suns that have beams, and what surfaces
 // hide of them; of a constant one the mean, from all sides. After suns, their beams and shadows.
 TYN_API void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s);
+// All light of the environment that is no sun's with a beam, its mean too, as ordinates and their directions, whatever the camera
+// sees; with surfaces depth maps.
+TYN_API void tyn_add_whole_sky(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 static inline bool tyn_is_lit(const float radiance[3])
 {
     return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
@@ -119,6 +122,26 @@ TYN_API tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job);
 // the user's `setting` says, which is named in a warning. After all of them.
 TYN_API void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
                            tyn_sources *s);
+
+// The medium averaged for `dims` cells, two texels a cell, if it is much finer; `texel`: the size of its texels then, m. False: it
+// is as it was.
+TYN_API bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3],
+                                tyn_medium_refs *medium, float texel[3]);
+// What the medium leaves of the ordinates on their way to so many cells along its longest side.
+TYN_API void tyn_add_columns(tyn_graph *g, const tyn_job *job, int32_t cells, tyn_sources *s);
+
+// All lights in one list, for methods that ask every light at every point.
+typedef struct tyn_light_list {
+    tyn_ref lights; // struct light_list_block
+    tyn_ref shades; // struct light_shades_block, where the sky has directions
+    uint32_t most;  // as many lights are in it at most
+} tyn_light_list;
+
+// Suns and lamps of the scene, and up to `lights` distant lights in the environment's place. After shadows and the sky's maps.
+// The suns of a map are among the distant lights, which are points, as published; or `suns_apart`: they have shadow maps as those of
+// the scene do, and distant lights are as wide as their regions.
+TYN_API tyn_light_list tyn_add_light_list(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                                          uint32_t lights, bool suns_apart);
 
 // Cells of the lattice within which all lamps are followed by the march: beams of spots farther, until they are as
 // wide.
@@ -138,6 +161,13 @@ typedef struct tyn_rsm {
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_rsm;
 TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
+// The same as other views see the surfaces, without what they reflect: square maps of `texels`, apart in one atlas.
+typedef struct tyn_rsm_view {
+    uint32_t offset[2]; // of its map in the atlas, texels
+    float rows[4][4];   // M -> clip
+} tyn_rsm_view;
+TYN_API void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_view *views,
+                               uint32_t count, uint32_t texels, tyn_rsm_refs *maps);
 
 // The passes of these calls, for a method's table: TYN_SUN_PASSES(TYN_PASS_NAME) is "beam", "shadow_map", "light_cells"
 // (method.h).
@@ -145,6 +175,7 @@ TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 #define TYN_SUN_PASSES(X) X(beam), X(shadow_map), X(light_cells)
 #define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
+#define TYN_LIST_PASSES(X) X(env_importance), X(median_cut), X(light_list)
 #define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
     X(lattice_cells), X(walls), X(walls_beyond), X(wall_light), X(rooms), X(columns_average),      \

@@ -30,6 +30,12 @@ TYN_API void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
 TYN_API void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 // Surfaces that the camera sees, in direct light, that of `sources.surface_light`, and the field's.
 TYN_API void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// The same in the light of suns, lamps and VPLs that the medium leaves, by the shadows of `s`: for methods whose march knows none
+// of these.
+TYN_API void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s,
+                                    tyn_view_inputs *in);
+// m: no step of a march is longer where the extinction is the scene's largest. `cell`: of the field; 0: there is none.
+TYN_API float tyn_longest_step(const tyn_frame_scene *frame, float cell);
 // Marches: what the job and its hooks want of radiance, transmittance and depth; makes the outputs SINGLE and MULTIPLE.
 TYN_API tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Hands the picture through the job's hooks and makes what the job wants of it: radiance, transmittance, depth, the host's
