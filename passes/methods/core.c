@@ -31,17 +31,11 @@ static void prepare(tyn_graph *g, tyn_job *job)
 }
 
 // The default first.
-extern const tyn_method tyn_method_pop, tyn_method_pop_paper, tyn_method_lpv, tyn_method_photon,
-    tyn_method_shdom, tyn_method_single, tyn_method_constellation, tyn_method_gradient,
-    tyn_method_path;
-static const tyn_method *const methods[] = {&tyn_method_pop,           &tyn_method_pop_paper,
-                                            &tyn_method_lpv,           &tyn_method_photon,
-                                            &tyn_method_shdom,         &tyn_method_single,
-                                            &tyn_method_constellation, &tyn_method_gradient,
-                                            &tyn_method_path,          NULL};
+extern const tyn_method tyn_method_pop, tyn_method_single, tyn_method_path;
+static const tyn_method *const methods[] = {&tyn_method_pop, &tyn_method_single, &tyn_method_path,
+                                            NULL};
 
-extern const tyn_picture_hook tyn_hook_impostor;
 static const tyn_picture_hook core = {.name = "core", .prepare = prepare};
-static const tyn_picture_hook *const hooks[] = {&core, &tyn_hook_impostor, NULL};
+static const tyn_picture_hook *const hooks[] = {&core, NULL};
 
 TYN_PLUGIN("core", "the library's own", passes, methods, hooks)

@@ -4,6 +4,7 @@
 #include "numbers.h"
 #include "passes/raymarch/raymarch.h"
 #include "shaders/common/counters.h"
+#include <tyndall/extend/view.h>
 #include "shaders/beams/beam_args.h"
 #include "shaders/phase/scatter_lut_args.h"
 #include "random_unit.h"
@@ -77,7 +78,8 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->params.width = s->params.height = 16;
     s->params.num_shapes = 1;
     memcpy(s->params.extent, m->extent, sizeof m->extent);
-    s->params.longest_step = tyn_raymarch_longest_step(sigma_s + sigma_a, 0, m);
+    const tyn_frame_scene frame = {.medium = *m, .majorant = sigma_s + sigma_a};
+    s->params.longest_step = tyn_longest_step(&frame, 0);
 }
 
 static void set_sun(march_scene *s, float x, float y, float z)

@@ -1,6 +1,9 @@
 #!/bin/sh
 # floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines, and that passes have tests.
 #
+# A module is a folder passes/MODULE with a module.c. It sees public headers, shaders/ and itself; of itself its passes see their
+# own folders and common/; nobody sees modules.
+#
 # Floors, bottom to top: base < gpu, scene < io < graph < registry < frame < passes < methods/job < methods/light
 # < methods/solve < methods/view < methods < tools, samples, tests. A file includes its own folder and lower floors only;
 # passes do not include each other; what they share is in shaders/, which sees engine/scene, <tyndall/pass.h> and what else is
@@ -13,7 +16,7 @@ check()
 (
     cd "$1"
     find engine passes shaders tools samples -type f \
-        \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.glsl' \) \
+        ! -path 'passes/*/tests/*' \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.glsl' \) \
         2>/dev/null | sort | xargs awk '
     function exists(path,   line, r) {
         if (!(path in seen)) {
@@ -63,6 +66,9 @@ check()
     function unit(path,   p, n) {
         n = split(path, p, "/")
         if (p[1] == "engine" && p[2] == "include") { return "public/" (p[4] == "extend" ? "extend/" : "") p[n] }
+        if (p[1] == "passes" && exists("passes/" p[2] "/module.c")) {
+            return "module/" p[2] (n > 3 ? "/" p[3] : "")
+        }
         if (path ~ /^passes\/methods\/[a-z]+\//) { return "passes/methods/" p[3] }
         if (p[1] == "engine" || p[1] == "passes" || p[1] == "samples") { return p[1] "/" p[2] }
         return p[1]
@@ -74,6 +80,20 @@ check()
     }
     # A pass is a table for the graph: it sees no more than that does.
     function reach(u) { return floor_of(u) == 3 ? 2.1 : floor_of(u) }
+    # Of a module and its parts "module/NAME", "module/NAME/PASS".
+    function check_module(from, to, name,   f, t, part) {
+        split(from, f, "/")
+        split(to, t, "/")
+        part = f[3] != ""
+        if (to == "shaders") { return }
+        if (to ~ /^public\//) {
+            if (part && lowest[substr(to, 8)] > 2.1) { fault(from " is below <" name ">") }
+        } else if (t[1] != "module" || t[2] != f[2]) {
+            fault("a module sees public headers, shaders and itself, not " name)
+        } else if (part && (f[3] == "common" || t[3] != "common")) {
+            fault(from " does not see " name " of " to)
+        }
+    }
     function fault(text) {
         print FILENAME ":" FNR ": " text
         faults++
@@ -140,7 +160,11 @@ check()
         to = unit(target)
         if (to ~ /^public\// && !(substr(to, 8) in lowest)) { fault("no floor is known for <" name ">") }
         if (from == to) { next }
-        if (from ~ /^public\//) {
+        if (from ~ /^module\//) {
+            check_module(from, to, name)
+        } else if (to ~ /^module\//) {
+            fault(name " belongs to a module, which nobody else sees")
+        } else if (from ~ /^public\//) {
             a = tier[substr(from, 8)]
             b = to ~ /^public\// ? tier[substr(to, 8)] : from ~ /^public\/extend/ && to == "shaders" ? 0 : 99
             if (b >= a) { fault("a public header includes " name ", which is not of a lower tier") }
@@ -166,21 +190,38 @@ check()
     END { exit faults > 0 }'
 )
 
-# untested ROOT: prints a line for each pass that has no test of its own, tests/gpu/PASS.c, or one that is
-# not built; status 1 if there is any, or no pass at all.
+# passes_of ROOT: lines PASS FOLDER-OF-ITS-TEST MESON-FILE.
+passes_of()
+(
+    cd "$1"
+    for folder in passes/*/; do
+        [ "$folder" != passes/methods/ ] || continue
+        if [ -f "${folder}module.c" ]; then
+            for part in "$folder"*/; do
+                case $(basename "$part") in common | tests | '*') continue ;; esac
+                echo "$(basename "$part") ${folder}tests/gpu ${folder}meson.build"
+            done
+        else
+            echo "$(basename "$folder") tests/gpu tests/gpu/meson.build"
+        fi
+    done
+)
+
+# untested ROOT: prints a line for each pass that has no test of its own, PASS.c, or one that is not built; status 1 if there is
+# any, or no pass at all.
 untested()
 (
     cd "$1"
-    for folder in passes/*/; do basename "$folder"; done | grep -vx methods | {
+    passes_of . | {
         passes=0
         faults=0
-        while read -r pass; do
+        while read -r pass folder build; do
             passes=$((passes + 1))
-            if [ ! -f "tests/gpu/$pass.c" ]; then
-                echo "pass $pass has no test of its own, tests/gpu/$pass.c"
+            if [ ! -f "$folder/$pass.c" ]; then
+                echo "pass $pass has no test of its own, $folder/$pass.c"
                 faults=$((faults + 1))
-            elif ! grep -q "'$pass'" tests/gpu/meson.build; then
-                echo "tests/gpu/meson.build does not build $pass.c"
+            elif ! grep -q "'$pass'" "$build"; then
+                echo "$build does not build $pass.c"
                 faults=$((faults + 1))
             fi
         done
@@ -221,20 +262,32 @@ printf '%s\n' '#include "frame/f.h"' > passes/b/bad.c
 printf '%s\n' '#include "passes/methods/view/v.h"' > passes/methods/light/bad.c
 printf '%s\n' '#include "passes/methods/light/l.h"' '#include "passes/a/a.h"' '#include "frame/f.h"' \
     '#include <tyndall/context.h>' > passes/methods/view/good.c
+mkdir -p passes/m/one passes/m/two passes/m/common passes/m/tests/gpu passes/n
+: > passes/m/module.c; : > passes/n/module.c; : > passes/n/n.h; : > passes/m/one/one.h; : > passes/m/common/args.h
+: > engine/include/tyndall/extend/method.h
+printf '%s\n' '#include "one/one.h"' '#include "common/args.h"' '#include <tyndall/extend/method.h>' '#include "shaders/x/args.h"' > passes/m/good.c
+printf '%s\n' '#include "passes/a/a.h"' '#include "base/half.h"' '#include "passes/n/n.h"' > passes/m/bad.c
+printf '%s\n' '#include "one.h"' '#include "../common/args.h"' '#include <tyndall/pass.h>' > passes/m/one/good.c
+printf '%s\n' '#include "../one/one.h"' '#include <tyndall/extend/method.h>' > passes/m/two/bad.c
+printf '%s\n' '#include "../one/one.h"' > passes/m/common/bad.glsl
+printf '%s\n' '#include "passes/m/one/one.h"' > passes/methods/bad.c
+printf '%s\n' '#include "engine/base/half.h"' > passes/m/tests/gpu/one.c
+echo "['gpu', 'one', files('tests/gpu/one.c')]" > passes/m/meson.build
 mkdir -p "$self/tests/gpu" "$self/passes/tested" "$self/passes/unbuilt"
 : > tests/gpu/tested.c; : > tests/gpu/unbuilt.c; echo "'tested': [], 'barely': []" > tests/gpu/meson.build
 cd - > /dev/null
 status=0
 found=$(check "$self") || status=$?
 lines=$(printf '%s\n' "$found" | wc -l)
-if [ "$status" = 0 ] || [ "$lines" != 21 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
-    printf 'the check itself is broken: 21 faults expected, found %s:\n%s\n' "$lines" "$found"
+if [ "$status" = 0 ] || [ "$lines" != 28 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
+    printf 'the check itself is broken: 28 faults expected, found %s:\n%s\n' "$lines" "$found"
     exit 1
 fi
 status=0
 found=$(untested "$self") || status=$?
 if [ "$status" = 0 ] || [ "$found" != "pass a has no test of its own, tests/gpu/a.c
 pass b has no test of its own, tests/gpu/b.c
+pass two has no test of its own, passes/m/tests/gpu/two.c
 tests/gpu/meson.build does not build unbuilt.c" ]; then
     printf 'the check of tests itself is broken: it found\n%s\n' "$found"
     exit 1
