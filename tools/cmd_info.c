@@ -128,6 +128,9 @@ static void print_methods(void)
         }
         printf("\n");
     }
+    if (tyn_methods_left_out()[0]) {
+        printf("not in this build: %s\n", tyn_methods_left_out());
+    }
 }
 
 // ---- a scene ----------------------------------------------------------------------------------

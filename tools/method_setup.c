@@ -36,8 +36,9 @@ bool method_find(app *a, const char *name, tyn_method_info *info)
         used +=
             (size_t)snprintf(line + used, sizeof line - used, "%s %s", i ? "," : "", info->name);
     }
-    app_error(a, "%s: there is no method '%s'; there are:%s", app_word(a, "--method", "method"),
-              name, line);
+    const char *others = tyn_methods_left_out();
+    app_error(a, "%s: there is no method '%s'; there are:%s%s%s", app_word(a, "--method", "method"),
+              name, line, others[0] ? "; not in this build: " : "", others);
     return false;
 }
 

@@ -46,11 +46,11 @@ void selftest_skip(selftest *t, const char *name, const char *why)
     add_json(t, name, "skipped", why, &check);
 }
 
-bool selftest_next(uint32_t *index, tyn_method_info *info, const selftest_promise **promise)
+bool selftest_next(uint32_t *index, tyn_method_info *info, const tyn_promise **promise)
 {
     for (*promise = NULL; *index < tyn_num_methods() && !*promise; ++*index) {
         tyn_method_at(*index, info);
-        *promise = selftest_promise_of(info->name);
+        *promise = info->promise;
     }
     return *promise != NULL;
 }

@@ -1,7 +1,6 @@
 // selftest.h -- what the checks of `tyndall selftest` share.
 #pragma once
 #include "renderer.h"
-#include "selftest_promises.h"
 #include "selftest_scenes.h"
 #include <cjson/cJSON.h>
 
@@ -20,7 +19,7 @@ void selftest_skip(selftest *t, const char *name, const char *why); // neither p
 
 // Goes through the methods in turn: the next one and what it promises, from *index on (0 at first). False: there are no
 // more.
-bool selftest_next(uint32_t *index, tyn_method_info *info, const selftest_promise **promise);
+bool selftest_next(uint32_t *index, tyn_method_info *info, const tyn_promise **promise);
 
 // Renders with a method ("pop", NULL settings = defaults); `r` is open afterwards if the exit code is
 // EXIT_DONE, and closed if it is not.

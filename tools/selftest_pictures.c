@@ -75,7 +75,7 @@ int selftest_furnace(selftest *t)
     int code = EXIT_DONE;
     for (size_t i = 0; i < ARRAY_SIZE(g); i++) {
         tyn_method_info info;
-        const selftest_promise *p;
+        const tyn_promise *p;
         for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
             code = p->furnace > 0 ? check_furnace(t, &info, p->furnace, g[i]) : EXIT_DONE;
         }
@@ -124,7 +124,7 @@ int selftest_cubes(selftest *t)
                            henyey_greenstein(g, -1) * (1 - e * e) / 2};
     int code = EXIT_DONE;
     tyn_method_info info;
-    const selftest_promise *p;
+    const tyn_promise *p;
     for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
         for (size_t i = 0; i < ARRAY_SIZE(views) && code == EXIT_DONE; i++) {
             const char *view = views[i].name;
@@ -158,7 +158,7 @@ int selftest_rows(selftest *t)
             selftest_skip(t, name, "a plugin's method");
             continue;
         }
-        selftest_check(t, name, !selftest_promise_of(info.name), 0, 0, "tools/selftest_promises.c");
+        selftest_check(t, name, !info.promise, 0, 0, "tyn_method_info.promise");
     }
     return EXIT_DONE;
 }
@@ -193,7 +193,7 @@ int selftest_energy(selftest *t)
 {
     int code = EXIT_DONE;
     tyn_method_info info;
-    const selftest_promise *p;
+    const tyn_promise *p;
     for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
         for (int lamp = 0; lamp < 2 && code == EXIT_DONE && p->energy > 0; lamp++) {
             code = check_energy(t, info.name, p->energy, lamp == 1);

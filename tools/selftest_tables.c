@@ -19,7 +19,7 @@ typedef struct slab_row {
 } slab_row;
 
 // Two points inside, next to the faces; net flux is up - down.
-static int check_slab(selftest *t, const char *with, const selftest_promise *promised,
+static int check_slab(selftest *t, const char *with, const tyn_promise *promised,
                       const slab_row *row)
 {
     const float points[2][3] = {{0.5f, 0.9999f, 0.5f}, {0.5f, 0.0001f, 0.5f}};
@@ -68,7 +68,7 @@ int selftest_slabs(selftest *t)
     };
     int code = EXIT_DONE;
     tyn_method_info info;
-    const selftest_promise *p;
+    const tyn_promise *p;
     for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
         for (size_t i = 0; i < ARRAY_SIZE(rows) && code == EXIT_DONE && p->slabs > 0; i++) {
             code = check_slab(t, info.name, p, &rows[i]);
@@ -118,7 +118,7 @@ int selftest_half_space(selftest *t)
     for (size_t i = 0; i < ARRAY_SIZE(suns); i++) {
         const double expected = albedo / (4 * pi) * h1 * suns[i].h / (1 + suns[i].mu0);
         tyn_method_info info;
-        const selftest_promise *p;
+        const tyn_promise *p;
         for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
             if (p->half_space > 0) {
                 code = check_half_space(t, &info, p->half_space, suns[i].mu0, expected);
@@ -236,7 +236,7 @@ int selftest_lamps(selftest *t)
     } rows[] = {{0, 0.0228435636}, {0.5f, 0.011678683}};
     int code = EXIT_DONE;
     tyn_method_info info;
-    const selftest_promise *p;
+    const tyn_promise *p;
     for (uint32_t m = 0; code == EXIT_DONE && selftest_next(&m, &info, &p);) {
         for (size_t i = 0; i < ARRAY_SIZE(rows) && code == EXIT_DONE && p->airlight > 0; i++) {
             code = check_airlight(t, &info, p->airlight, rows[i].g, rows[i].radiance);

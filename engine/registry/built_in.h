@@ -3,3 +3,4 @@
 #include <tyndall/extend/plugin.h>
 
 extern const tyn_plugin *const tyn_built_in[]; // NULL at the end; none has calls
+extern const char tyn_left_out[];              // the methods of the other modules: "lpv, photon"

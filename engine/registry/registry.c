@@ -109,6 +109,11 @@ const char *tyn_method_reference(void)
     return methods[i].info.name;
 }
 
+const char *tyn_methods_left_out(void)
+{
+    return tyn_left_out;
+}
+
 void tyn_method_names(uint32_t outputs, char *text, size_t size)
 {
     size_t at = 0;

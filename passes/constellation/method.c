@@ -215,13 +215,16 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_once = 0.01};
+
 const tyn_method tyn_method_constellation = {
     .info = {.name = "constellation",
              .summary = "one scattering under distant lights that stand for the environment, as "
                         "published in 2008",
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
              .single_only = true,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

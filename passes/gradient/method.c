@@ -269,12 +269,15 @@ static const char *const passes[] = {
     NULL,
 };
 
+static const tyn_promise promise = {.cube_once = 0.02};
+
 const tyn_method tyn_method_gradient = {
     .info = {.name = "gradient",
              .summary = "one scattering from few samples with gradients, split where they err",
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
              .single_only = true,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

@@ -183,13 +183,16 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_as_recorded = 0.01, .cube_recorded = 0.0372323};
+
 const tyn_method tyn_method_lpv = {
     .info = {.name = "lpv",
              .summary = "light propagation volumes: scattered light moves on from cell to cell",
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

@@ -370,6 +370,14 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.furnace = 1e-4,
+                                    .cube_forward = 0.001,
+                                    .slabs = 2e-4,
+                                    .half_space = 7e-4,
+                                    .airlight = 1e-3,
+                                    .point_source = 0.002,
+                                    .energy = 0.01};
+
 const tyn_method tyn_method_path = {
     .info = {.name = "path",
              .summary = "unbiased path tracing: the reference",
@@ -382,7 +390,8 @@ const tyn_method tyn_method_path = {
              .traces_rays = true,
              .reference = true,
              .phases = TYN_PHASES_ALL,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .reads_env_cdf = true,
     .batch = batch,
     .passes = passes,

@@ -204,6 +204,14 @@ static const char *const passes[] = {
     TYN_FIELD_PASSES(TYN_PASS_NAME),         NULL,
 };
 
+static const tyn_promise promise = {.furnace = 0.005,
+                                    .cube_isotropic = 0.03,
+                                    .slabs = 0.02,
+                                    .half_space = 0.04,
+                                    .point_source = 0.05,
+                                    .energy = 0.01,
+                                    .wide_ground = true};
+
 const tyn_method tyn_method_pop = {
     .info = {.name = "pop",
              .summary = "principal ordinates: exact beams, one lattice for scattered light",
@@ -211,7 +219,8 @@ const tyn_method tyn_method_pop = {
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .traces_rays = true, // virtual lights see what stands around them
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
-             .limits = tyn_limits_pop},
+             .limits = tyn_limits_pop,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

@@ -78,13 +78,16 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_once = 0.01, .airlight = 0.01};
+
 const tyn_method tyn_method_single = {
     .info = {.name = "single",
              .summary = "light that has scattered exactly once",
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)TYN_GUIDE_OUTPUTS,
              .single_only = true,
              .phases = TYN_PHASES_OF_ONE_MEDIUM,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

@@ -243,6 +243,8 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_as_recorded = 0.01, .cube_recorded = 0.06386};
+
 const tyn_method tyn_method_photon = {
     .info = {.name = "photon",
              .summary = "photons in a coarse cache that is renewed from frame to frame",
@@ -250,7 +252,8 @@ const tyn_method tyn_method_photon = {
                  (TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE)) |
                  TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT,
              .traces_rays = true,
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .reads_env_cdf = true,
     .passes = passes,
     .declare = declare,

@@ -83,11 +83,14 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_as_recorded = 0.01, .cube_recorded = 0.0576494};
+
 const tyn_method tyn_method_pop_paper = {
     .info = {.name = "pop-paper",
              .summary = "principal-ordinates propagation as published in 2014, cell by cell",
              .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

@@ -163,13 +163,16 @@ static const tyn_limit limits[] = {
     {NULL},
 };
 
+static const tyn_promise promise = {.cube_isotropic = 0.04};
+
 const tyn_method tyn_method_shdom = {
     .info = {.name = "shdom",
              .summary = "spherical harmonics and discrete ordinates (1998), to be compared with",
              .outputs = TYN_OUTPUT_PROBE |
                         (TYN_PICTURE_OUTPUTS &
                          ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_GUIDE_OUTPUTS)),
-             .limits = limits},
+             .limits = limits,
+             .promise = &promise},
     .passes = passes,
     .declare = declare,
 };

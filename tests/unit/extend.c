@@ -36,7 +36,7 @@ static void layout(void **state)
         SIZE(tyn_draw, 64),
         SIZE(tyn_regime, 200),
         SIZE(tyn_limit, 240),
-        SIZE(tyn_method_info, 56),
+        SIZE(tyn_method_info, 64),
         SIZE(tyn_setting, 32),
         SIZE(tyn_scene, 10904),
         SIZE(tyn_view, 192),
@@ -52,7 +52,7 @@ static void layout(void **state)
         SIZE(tyn_rsm, 6268),
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),
-        SIZE(tyn_method, 88),
+        SIZE(tyn_method, 96),
         SIZE(tyn_calls, 760),
         SIZE(tyn_plugin, 64),
         // What kernels read that were compiled with the GLSL of then.

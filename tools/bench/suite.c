@@ -210,6 +210,16 @@ static uint32_t count_sweep(suite_reader *r, const cJSON *sweep)
     return count;
 }
 
+// Is it one of the library's methods that this build leaves out?
+static bool is_left_out(const char *name)
+{
+    tyn_method_info info;
+    const char *list = tyn_methods_left_out(), *at = strstr(list, name);
+    const char end = at ? at[strlen(name)] : 'x';
+    return at && (at == list || at[-1] == ' ') && (end == ',' || end == '\0') && name[0] &&
+           !tyn_method_named(name, &info);
+}
+
 // One entry of `runs` or `baselines`: as many runs as its sweep has combinations of values.
 static void read_entry(suite_reader *r, const cJSON *json, bool baseline, uint32_t entry,
                        bench_suite *s)
@@ -219,6 +229,10 @@ static void read_entry(suite_reader *r, const cJSON *json, bool baseline, uint32
     suite_check_keys(r, json, keys);
     const char *how = suite_text(r, json, "method", false);
     how = how ? how : baseline ? tyn_method_reference() : tyn_method_default();
+    if (is_left_out(how)) {
+        s->num_left_out++;
+        return;
+    }
     const char *name = suite_text(r, json, "name", false);
     name = name ? name : how;
     const char *group = suite_text(r, json, "group", false);
@@ -485,6 +499,10 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
         read_ratio(r, suite_element(r, root, "ratios", i), s, &s->ratios[i]);
     }
     r->where[0] = '\0';
+    if (r->ok && s->num_left_out) {
+        app_note(r->a, "%s: %u of its runs are left out: not in this build: %s", s->file,
+                 s->num_left_out, tyn_methods_left_out());
+    }
     if (r->ok) {
         name_scenes_and_runs(r, s);
         check_only(r, s);

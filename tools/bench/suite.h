@@ -69,9 +69,10 @@ typedef struct bench_suite {
     bench_ratio ratios[BENCH_MAX_RATIOS];
     bench_peer peers[BENCH_MAX_PEERS];
     uint32_t num_scenes, num_runs, num_ratios, num_peers;
-    uint32_t block;       // beside 1; 2 or more
-    uint32_t frames;      // timing frames of each kind
-    float timing_seconds; // no further frame of a kind is begun after this long
+    uint32_t num_left_out; // entries of runs whose method this build leaves out
+    uint32_t block;        // beside 1; 2 or more
+    uint32_t frames;       // timing frames of each kind
+    float timing_seconds;  // no further frame of a kind is begun after this long
     float warm_seconds; // of frames before those of a kind, so that the device's clock has gone up
     float max_seconds;  // a rendering that would take longer is left out
     bool ceilings;      // measure those of the device

@@ -110,6 +110,24 @@ typedef enum tyn_known_phases {
     TYN_PHASES_ALL,
 } tyn_known_phases;
 
+// What a method promises in the groups of `tyndall selftest`. The largest error in a group of checks; 0: none is promised, and the group leaves the method out. Relative to the
+// expected value where nothing else is said. Of a method that tells its standard error four of these come on top.
+typedef struct tyn_promise {
+    double furnace;        // absolute: of the worst pixel; of the mean where the method is noisy
+    double cube_isotropic; // mean of the picture, g 0
+    double cube_forward;   // ... g 0.5
+    double cube_once;      // ... g 0.5, of the light that has scattered once
+    double
+        cube_as_recorded; // ... side view, of cube_recorded: of a method that is far off, but always equally
+    double cube_recorded; // that mean, W/(m^2 sr)
+    double slabs;         // in units of the flux that comes in
+    double half_space;    //
+    double airlight;      // light about a lamp that has scattered once
+    double point_source;  // fluence about a lamp
+    double energy;        // imbalance, in units of the power that comes in
+    bool wide_ground;     // wants a ground that is wide, and not one that repeats with the slab
+} tyn_promise;
+
 typedef struct tyn_method_info {
     const char *name, *summary;
     const tyn_pass_desc *const *passes; // NULL-terminated, in the order of the frame
@@ -120,6 +138,7 @@ typedef struct tyn_method_info {
     bool single_only; // its answer is the light that has scattered once
     tyn_known_phases phases;
     const tyn_limit *limits;
+    const tyn_promise *promise; // NULL: none; those of plugins are theirs to test
     const char *
         plugin; // which one has brought it; "" = it was registered by the host; NULL: it is the library's
 } tyn_method_info;
@@ -127,6 +146,8 @@ TYN_API uint32_t tyn_num_methods(void);
 TYN_API void tyn_method_at(uint32_t index, tyn_method_info *info);
 // NULL: the default. False: there is none of that name; `info` is all 0.
 TYN_API bool tyn_method_named(const char *name, tyn_method_info *info);
+// "lpv, photon": methods of the library that this build leaves out; "": none.
+TYN_API const char *tyn_methods_left_out(void);
 TYN_API const char *tyn_method_default(void);   // the first one's name
 TYN_API const char *tyn_method_reference(void); // the name of the one that is `reference`
 
