@@ -4,6 +4,7 @@
 // Asserted: pictures of `pop` are within the bound of one-lobe media (pop_path.c), each printed beside that of the lobe of
 // its mean cosine; a table of one lobe gives the lobe's own picture under every kind of light; first scattering of `single`
 // is `path`'s; what does not know the table gives the picture of the lobe of its mean cosine, to the bit.
+#include "built_in.h"
 #include "bound.h"
 #include "path_run.h"
 #include "numbers.h"
@@ -128,6 +129,9 @@ static void same_lobe(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const char *method = cases[i].method;
         const lit_by lit = cases[i].lit;
+        if (!is_built_in(method)) {
+            continue;
+        }
         tyn_scene scene;
         tyn_view view;
         tyn_phase phase;
@@ -157,6 +161,9 @@ static void lobe_instead(void **state)
     path_run *r = *state;
     for (int i = 0; i < 3; i++) {
         const char *method = i == 0 ? "constellation" : i == 1 ? "pop" : "single";
+        if (!is_built_in(method)) {
+            continue;
+        }
         tyn_scene scene;
         tyn_view view;
         picture with[2];

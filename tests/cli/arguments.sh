@@ -241,9 +241,10 @@ light "$less $less $less" unsigned.gltf --light-units photometric
 works info --methods
 grep -q "^pop " out || fail "info --methods lists no pop: $(cat out)"
 for method in "pop light" "lpv light" "photon light" "path fluxes" "single composite" "pop-paper composite"; do
+    grep -q "^${method% *} " out || continue # not in this build
     sed -n "/^${method% *} /,/ limits:/p" out | grep -q " outputs:.* ${method#* }\( \|\$\)" || fail "info --methods: not '$method': $(cat out)"
 done
-[ "$(grep -c " outputs:.* light" out)" = 3 ] || fail "info --methods: light of others than pop, lpv and photon: $(cat out)"
+[ "$(grep -c " outputs:.* light" out)" = "$(grep -cE '^(pop|lpv|photon) ' out)" ] || fail "info --methods: light of others than pop, lpv and photon: $(cat out)"
 works info --passes
 grep -q -- "-D lattice.cells=.*default" out || fail "info --passes: no lattice.cells"
 
