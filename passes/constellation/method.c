@@ -2,7 +2,7 @@
 // with a shadow ray per light and slice, as published in 2008.
 //
 // Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).
-// Light scatters once. docs/constellation.md says what is as published and what is beyond it.
+// Light scatters once. passes/constellation/constellation.md says what is as published and what is beyond it.
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "constellation/constellation.h"
@@ -185,8 +185,8 @@ static double near_lamps(const tyn_regime *r)
 }
 
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/constellation.md"),
-    TYN_LIMIT_ONE_SCATTERING("docs/constellation.md, \"Measured\""),
+    TYN_LIMIT_NOT_PERIODIC("passes/constellation/constellation.md"),
+    TYN_LIMIT_ONE_SCATTERING("passes/constellation/constellation.md, \"Measured\""),
     {.key = "thick slices",
      .where = {TYN_ABOVE(depth, 300)},
      .error = thick_slices,
@@ -210,7 +210,7 @@ static const tyn_limit limits[] = {
      .level = TYN_LIMIT_BREAKS,
      .advice = {"surfaces: they stop the light of suns and lamps, but not that of an environment, "
                 "and send none into the medium"},
-     .source = "docs/constellation.md"},
+     .source = "passes/constellation/constellation.md"},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

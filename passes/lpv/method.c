@@ -1,7 +1,7 @@
 // lpv.c -- method "lpv": light propagation volumes with a medium (Billeter, Sintorn and Assarsson 2012).
 //
 // Light that has not scattered is marched sharply, as in "single". What it scatters, and what surfaces reflect of it, starts
-// in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (docs/lpv.md). An environment shines along
+// in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (passes/lpv/lpv.md). An environment shines along
 // principal ordinates; among surfaces its mean enters the lattice from all sides.
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
@@ -120,10 +120,10 @@ static double sky(const tyn_regime *r)
     return 0.3 * fmin(1, r->sky_on_surfaces);
 }
 
-#define CUBES "docs/lpv.md, \"Cubes\""
+#define CUBES "passes/lpv/lpv.md, \"Cubes\""
 
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/lpv.md, \"Limits\""),
+    TYN_LIMIT_NOT_PERIODIC("passes/lpv/lpv.md, \"Limits\""),
     {.key = "few iterations",
      .where = {TYN_ABOVE(mean_depth, 0.1), TYN_ABOVE(all_scatterings, 0.05)},
      .error = few_iterations,
@@ -170,7 +170,7 @@ static const tyn_limit limits[] = {
      .advice = {"surfaces: one reflection, as published (fog-hall 22 %% off, room 56 %%); with "
                 "-D lpv.bounces=all and 128 iterations 9 and 6 %%; those beyond the medium's box "
                 "reflect nothing"},
-     .source = "docs/lpv.md, \"Scenes\""},
+     .source = "passes/lpv/lpv.md, \"Scenes\""},
     {.key = "the sky among surfaces",
      .where = {TYN_ABOVE(sky_on_surfaces, 0.05)},
      .error = sky,
@@ -178,7 +178,7 @@ static const tyn_limit limits[] = {
      .advice = {"sky among surfaces: it lights the medium by its mean and suns alone, and no "
                 "surface lights another with it (about %g %% off)",
                 {TYN_LIMIT_ERROR}},
-     .source = "docs/lpv.md, \"Limits\""},
+     .source = "passes/lpv/lpv.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

@@ -2,7 +2,7 @@
 //
 // Photons of all lights are traced through the medium, a generation in each frame; a coarse cache holds the light of the last
 // ones, as lobes about its net flux. It is upsampled with the medium as guide, and marched, with what suns and lamps have
-// scattered forward alone along their beams (docs/photon.md).
+// scattered forward alone along their beams (passes/photon/photon.md).
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "solve.h"
@@ -190,10 +190,10 @@ static double thick(const tyn_regime *r)
                : 0;
 }
 
-#define MEASURED "docs/photon.md, \"Measured\""
+#define MEASURED "passes/photon/photon.md, \"Measured\""
 
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/photon.md, \"Limits\""),
+    TYN_LIMIT_NOT_PERIODIC("passes/photon/photon.md, \"Limits\""),
     {.key = "lobes",
      .where = {TYN_ABOVE(most_g, 0.05), TYN_ABOVE(mean_depth, 0)},
      .error = lobe,
@@ -238,7 +238,7 @@ static const tyn_limit limits[] = {
      .advice =
          {"surfaces have the light of the cells in front of them (10 generations: room 8 %% off, "
           "fog-hall 11 %%, vpl-cave 20 %%)"},
-     .source = "docs/photon.md, \"Limits\""},
+     .source = "passes/photon/photon.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

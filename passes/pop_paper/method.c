@@ -60,14 +60,14 @@ static double hops(const tyn_regime *r)
 }
 
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/pop-paper.md, \"Measured\""),
+    TYN_LIMIT_NOT_PERIODIC("passes/pop_paper/pop-paper.md, \"Measured\""),
     {.key = "propagation as published",
      .where = {TYN_ABOVE(mean_depth, 0)},
      .error = hops,
      .level = TYN_LIMIT_BREAKS,
      .advice = {"propagation as published: light that is moved without being lost adds up (cubes "
                 "of depth 0.1 to 10: 28 to 79 %% off); it is here to be compared with"},
-     .source = "docs/pop-paper.md, \"Measured\"",
+     .source = "passes/pop_paper/pop-paper.md, \"Measured\"",
      .warned = {TYN_ABOVE(all_scatterings, 0.05), TYN_ABOVE(cell_transport, 0)},
      .warning = {"accuracy: the published propagation turns light at every hop whether it has "
                  "scattered or not, as if a hop were 2 transport mean free paths; here it is "
@@ -78,7 +78,7 @@ static const tyn_limit limits[] = {
      .level = TYN_LIMIT_BREAKS,
      .advice = {"surfaces stop what goes straight alone: light that has turned goes through walls "
                 "(fog-hall 39 %% off, vpl-cave 42 %%, room 19 %%, lantern 12 %%)"},
-     .source = "docs/pop-paper.md, \"Surfaces\""},
+     .source = "passes/pop_paper/pop-paper.md, \"Surfaces\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

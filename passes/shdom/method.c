@@ -1,7 +1,7 @@
 // shdom.c -- method "shdom": spherical harmonics and discrete ordinates (Evans 1998), to be compared with.
 //
 // Suns, lamps and principal ordinates of an environment light the cells of a lattice; what scatters is solved for there in a
-// few bands of spherical harmonics. The march adds what scatters once of suns and lamps, sharply (docs/shdom.md).
+// few bands of spherical harmonics. The march adds what scatters once of suns and lamps, sharply (passes/shdom/shdom.md).
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "solve.h"
@@ -100,7 +100,7 @@ static double flat(const tyn_regime *r)
     return r->scatterings > 0.05 ? 0.2 : 0;
 }
 
-#define STRESS "docs/shdom.md, \"Limits\""
+#define STRESS "passes/shdom/shdom.md, \"Limits\""
 
 static double without_surfaces(const tyn_regime *r)
 {
@@ -158,7 +158,7 @@ static const tyn_limit limits[] = {
      .level = TYN_LIMIT_BREAKS,
      .advice = {"surfaces are left out: they stop no light, reflect none and are not seen (room "
                 "88 %% off, cornell-smoke 100 %%, fog-hall 1400 %%)"},
-     .source = "docs/shdom.md, \"Limits\""},
+     .source = "passes/shdom/shdom.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

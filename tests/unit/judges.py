@@ -51,6 +51,7 @@ def main():
     root = sys.argv[1]
     wrong = check_rules()
     judged = [os.path.join(root, *place) for place in (("tests",), ("engine", "frame"))]
+    judged += [os.path.join(root, "passes", module, "tests") for module in sorted(os.listdir(os.path.join(root, "passes")))]
     for folder, _, names in (found for place in judged for found in os.walk(place)):
         for name in names:
             path = os.path.relpath(os.path.join(folder, name), root)

@@ -59,7 +59,7 @@ def check(root):
         if os.path.splitext(path)[1] not in SOURCES or os.path.basename(path) == os.path.basename(__file__):
             continue
         text = read(root, path)
-        for named, heading in re.findall(r'\b(docs/[\w-]+\.md|README\.md(?=, \\?"))(?:, \\?"([^"\\]+)\\?")?', text):
+        for named, heading in re.findall(r'\b((?:docs|passes/\w+)/[\w-]+\.md|README\.md(?=, \\?"))(?:, \\?"([^"\\]+)\\?")?', text):
             if named not in pages:
                 faults.append(f"{path}: there is no {named}")
             elif heading and heading not in [h.replace("`", "") for h in headings(pages[named])]:
@@ -75,8 +75,9 @@ def check_itself():
                          "[gone](docs/gone.md)\n[no](docs/a.md#none)\n`engine/none.c`\n",
             "CHANGELOG.md": "docs/gone.md\n",
             "docs/a.md": "# Page\n\n## A `heading` of a\n\n[up](../README.md) [here](#page) `engine/good.c` tools/docs/none\n",
-            "engine/good.c": '// docs/a.md, "A heading of a"\n',
-            "engine/bad.c": '"docs/gone.md" "docs/a.md, \\"None\\"" README.md, "None"\n',
+            "engine/good.c": '// docs/a.md, "A heading of a" passes/m/m.md\n',
+            "passes/m/m.md": "# Module\n",
+            "engine/bad.c": '"docs/gone.md" passes/m/gone.md passes/m/m.md, "None" "docs/a.md, \\"None\\"" README.md, "None"\n',
         }.items():
             os.makedirs(os.path.dirname(os.path.join(root, name)), exist_ok=True)
             with open(os.path.join(root, name), "w", encoding="utf-8") as file:
@@ -84,7 +85,7 @@ def check_itself():
         return check(root)
 
 
-expected = 9
+expected = 11
 found = check_itself()
 if len(found) != expected:
     sys.exit(f"the check itself is broken: {expected} faults expected, found:\n" + "\n".join(found))

@@ -2,8 +2,8 @@
 """readers.py SOURCE_ROOT -- who reads which file, from the #include lines.
 
 A file in shaders/ is there because several passes read it, or the engine: what one pass alone reads stands in its
-folder. Above passes/ nothing sees of a pass but its header, passes/NAME/NAME.h. Files of different folders include
-each other in no circle; a header and the source of its name are one.
+folder, what the passes of one module alone read in its common/. Of a pass nothing else sees but its header, NAME/NAME.h. Files
+of different folders include each other in no circle; a header and the source of its name are one.
 """
 import os
 import re
@@ -19,7 +19,7 @@ def files_below(root):
     for folder in FOLDERS:
         for path, _, names in os.walk(os.path.join(root, folder)):
             for name in names:
-                if name.endswith(CODE):
+                if name.endswith(CODE) and not re.match(r"passes/\w+/tests\b", os.path.relpath(path, root)):
                     yield os.path.relpath(os.path.join(path, name), root)
 
 
@@ -39,8 +39,14 @@ def includes(root):
     return found
 
 
+def module_of(file, graph):
+    """passes/MODULE, whose passes are folders in it; None: no module's."""
+    module = "/".join(file.split("/")[:2])
+    return module if module + "/module.c" in graph else None
+
+
 def readers(of, graph):
-    """Folders of passes that read a shader, straight or through others, and of the engine that do so straight."""
+    """Passes and modules that read a shader, straight or through others, and folders of the engine that do so straight."""
     folders, seen, wanted = set(), set(), [of]
     while wanted:
         target = wanted.pop()
@@ -50,7 +56,7 @@ def readers(of, graph):
                 if file.startswith("shaders/"):
                     wanted.append(file)
                 elif file.startswith("passes/") or target == of:
-                    folders.add(os.path.dirname(file))
+                    folders.add(module_of(file, graph) or os.path.dirname(file))
     return folders
 
 
@@ -93,10 +99,12 @@ def faults(root):
             folders = readers(file, graph)
             if len(folders) < 2:
                 lines.append(f"{file}: is read by {' '.join(folders) or 'nobody'} alone")
-        if not file.startswith(("passes/", "shaders/")):
+        if not file.startswith("shaders/"):
             for target in sorted(graph[file]):
-                parts = target.split("/")
-                if parts[0] == "passes" and parts[2] != parts[1] + ".h":
+                folder, name = os.path.split(target)
+                shared = folder.startswith("passes/methods") or os.path.basename(folder) == "common"
+                own = folder == os.path.dirname(file)
+                if folder.startswith("passes/") and not own and not shared and name != os.path.basename(folder) + ".h":
                     lines.append(f"{file}: includes {target}, which is private to its pass")
     return lines + ["circle: " + " ".join(group) for group in circles(graph)]
 
@@ -110,12 +118,20 @@ def check_itself():
         "passes/b/b.comp": '#include "shaders/x/several.glsl"\n#include "shaders/x/one.glsl"\n'
                            '#include "shaders/x/way.glsl"',
         "passes/a/a.h": "", "passes/a/a_args.h": "",
+        "shaders/x/module.glsl": "", "passes/mod/module.c": '#include "one/one.h"\n#include "one/one_args.h"',
+        "passes/mod/one/one.comp": '#include "shaders/x/module.glsl"', "passes/mod/two/two.comp": '#include "shaders/x/module.glsl"',
+        "passes/mod/one/one.h": "", "passes/mod/one/one_args.h": "", "passes/mod/common/c.glsl": "",
+        "passes/mod/two/more.comp": '#include "../common/c.glsl"', "passes/mod/tests/t.c": '#include "shaders/x/module.glsl"',
+        "passes/methods/m.c": '#include "passes/a/a_args.h"\n#include "passes/methods/light/l.h"', "passes/methods/light/l.h": "",
         "engine/m/m.c": '#include "passes/a/a.h"\n#include "passes/a/a_args.h"',
         "engine/m/round.h": '#include "n/back.h"', "engine/n/back.c": '#include "m/round.h"\n#include "n/back.h"',
         "engine/n/back.h": "",
     }
     expected = [
         "engine/m/m.c: includes passes/a/a_args.h, which is private to its pass",
+        "passes/methods/m.c: includes passes/a/a_args.h, which is private to its pass",
+        "passes/mod/module.c: includes passes/mod/one/one_args.h, which is private to its pass",
+        "shaders/x/module.glsl: is read by passes/mod alone",
         "shaders/x/none.glsl: is read by nobody alone",
         "shaders/x/one.glsl: is read by passes/b alone",
         "circle: engine/m/round engine/n/back",

@@ -2,7 +2,7 @@
 //
 // A lattice of cubic cells holds the power that travels in each of them, in two bands of spherical harmonics. In each
 // iteration it goes on to the 26 neighbours; what passes through a cell in all of them is its fluence. Coefficients are
-// those of delta scaling, as everywhere on the lattice (docs/lpv.md).
+// those of delta scaling, as everywhere on the lattice (passes/lpv/lpv.md).
 #pragma once
 #include <tyndall/pass.h>
 #include <tyndall/extend/lattice_shape.h>

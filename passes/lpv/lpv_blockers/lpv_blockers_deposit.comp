@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lpv_blockers_args.h"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/light/deposit.glsl"
+#include "../common/deposit.glsl"
 #include "shaders/random/rng.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

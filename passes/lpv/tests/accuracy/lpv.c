@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// As published; and what is right beyond it (docs/lpv.md).
+// As published; and what is right beyond it (passes/lpv/lpv.md).
 static const char published[] = "";
 static const char converged[] = "lpv.iterations=128 lpv.bounces=all";
 

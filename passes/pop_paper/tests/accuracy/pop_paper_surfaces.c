@@ -33,7 +33,7 @@ static void load_reference(picture *p, const char *name, const gpu_test *t)
 
 static void shadowed(void **state)
 {
-    // What is left comes of light that has turned, which no surface stops (docs/pop-paper.md, "Surfaces").
+    // What is left comes of light that has turned, which no surface stops (passes/pop_paper/pop-paper.md, "Surfaces").
     static const struct {
         const char *name;
         double error, bias;
