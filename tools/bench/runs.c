@@ -89,6 +89,10 @@ int bench_check(app *a, const bench_suite *suite)
     for (uint32_t i = 0; i < suite->num_scenes && code == EXIT_DONE; i++) {
         code = check_scene(a, suite, &suite->scenes[i]);
     }
+    if (code == EXIT_DONE && suite->num_left_out) {
+        app_note(a, "%s: %u of its runs are left out; not in this build: %s", suite->file,
+                 suite->num_left_out, tyn_methods_left_out());
+    }
     return code;
 }
 

@@ -499,10 +499,6 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
         read_ratio(r, suite_element(r, root, "ratios", i), s, &s->ratios[i]);
     }
     r->where[0] = '\0';
-    if (r->ok && s->num_left_out) {
-        app_note(r->a, "%s: %u of its runs are left out: not in this build: %s", s->file,
-                 s->num_left_out, tyn_methods_left_out());
-    }
     if (r->ok) {
         name_scenes_and_runs(r, s);
         check_only(r, s);
