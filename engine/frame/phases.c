@@ -43,7 +43,7 @@ static void warn(tyn_context *ctx, bool knows)
               "Henyey-Greenstein lobe "
               "of its mean cosine; 'path' knows them"
             : "phase functions that are not one Henyey-Greenstein lobe count as that of their mean "
-              "cosine; 'path', 'pop', 'lpv' and 'single' know them");
+              "cosine; 'path', 'pop' and 'single' know them");
 }
 
 // Forward lobes are sums of Legendre polynomials, of which there are as many as g = 0.995 needs (passes/scatter_lut).

@@ -34,8 +34,8 @@ static const tyn_param params_table[] = {
      "split"},
     {"importance", TYN_PARAM_ENUM, offsetof(tyn_ordinates_params, importance),
      ORDINATES_IMPORTANCE_AUTO, 0, 2, "",
-     "weight directions with their importance for the picture; auto: pop-paper does, others need "
-     "not",
+     "weight directions with their importance for the picture; auto: where the method "
+     "places them anew for every camera",
      (const char *const[]){"off", "on", "auto"}},
 };
 
