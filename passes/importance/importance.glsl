@@ -3,7 +3,7 @@
 #ifndef TYN_IMPORTANCE_GLSL
 #define TYN_IMPORTANCE_GLSL
 #include "shaders/common/scene_args.h"
-#include "shaders/beams/propagate.glsl"
+#include "shaders/beams/propagate_hop.glsl"
 #include "importance_args.h"
 
 const float IMPORTANCE_PI = 3.14159265358979;

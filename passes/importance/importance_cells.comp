@@ -78,7 +78,7 @@ void main()
         const float each = 1.0 / float(SAMPLES * SAMPLES * SAMPLES);
         float sigma_s = mean(scattered) * each, g = mean(turned) * each / max(sigma_s, 1e-30);
         float sigma_a = mean(absorbed) * each;
-        float decay = propagate_decay(sigma_s, g, TYN_PROPAGATE_RATE_EXACT);
+        float decay = (1.0 - g) * sigma_s; // of the mean cosine
         float f = args.scaled != 0u ? delta_fraction(g) : 0.0;
         here.sigma_s = (1.0 - f) * sigma_s;
         here.sigma_t = here.sigma_s + sigma_a;

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/common/camera.glsl"
+#include "shaders/phase/hg.glsl"
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_RAYS, local_size_y = 8) in;

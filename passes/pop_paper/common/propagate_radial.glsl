@@ -6,7 +6,7 @@
 // as the area grows. No bindings.
 #ifndef TYN_PROPAGATE_RADIAL_GLSL
 #define TYN_PROPAGATE_RADIAL_GLSL
-#include "shaders/beams/propagate.glsl"
+#include "propagate.glsl"
 #include "propagate_radial_grid.h"
 #include "shaders/common/octahedral.glsl"
 

@@ -6,7 +6,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
-#include "shaders/beams/propagate_args.h"
+#include "../common/propagate_args.h"
 
 typedef struct tyn_merge_grids_params {
     int32_t finer;       // cells of the result per cell of the aligned grids, along an axis; 1..8

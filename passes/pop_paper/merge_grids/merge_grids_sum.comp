@@ -4,7 +4,7 @@
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "../common/propagate_radial.glsl"
 #include "merge_grids_args.h"
 

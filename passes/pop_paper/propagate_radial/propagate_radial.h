@@ -15,7 +15,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
-#include "shaders/beams/propagate_args.h"
+#include "../common/propagate_args.h"
 #include "../common/propagate_radial_grid.h"
 
 typedef struct tyn_propagate_radial_params {

@@ -13,7 +13,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
-#include "shaders/beams/propagate_args.h"
+#include "../common/propagate_args.h"
 
 typedef struct tyn_propagate_rect_params {
     int32_t

@@ -1,7 +1,7 @@
 // propagate_rect_copy.comp -- the last state that was made, where the last iteration would have put it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

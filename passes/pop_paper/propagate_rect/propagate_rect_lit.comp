@@ -2,7 +2,7 @@
 // cells. Built for suns, whose shadow maps are looked at, and for other ordinates (TRACED), which have none: rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

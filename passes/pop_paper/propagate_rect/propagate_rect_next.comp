@@ -2,7 +2,7 @@
 // after the one before, nor behind one that was not needed: nothing was as bright as that. One thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 1) in;

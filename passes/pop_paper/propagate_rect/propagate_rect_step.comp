@@ -2,7 +2,7 @@
 // adds what it now sends to the eye (Eqs 7-8).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

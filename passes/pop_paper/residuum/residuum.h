@@ -6,7 +6,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
-#include "shaders/beams/propagate_args.h"
+#include "../common/propagate_args.h"
 
 typedef struct tyn_residuum_params {
     uint32_t on;         // for the method, no kernel of this pass reads it, as the two below

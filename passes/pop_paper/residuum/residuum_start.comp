@@ -4,7 +4,7 @@
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/beams/propagate.glsl"
+#include "../common/propagate.glsl"
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

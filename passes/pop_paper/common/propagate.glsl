@@ -9,9 +9,8 @@
 #define TYN_PROPAGATE_GLSL
 #include "shaders/common/scene_args.h"
 #include "propagate_args.h"
+#include "shaders/beams/propagate_hop.glsl"
 #include "shaders/phase/hg.glsl"
-
-const float PROPAGATE_CONE = 0.70710678; // cosine of 45 degrees, the half angle of Eq 3's cones
 
 // ---- the grid -----------------------------------------------------------------------------------
 
@@ -101,32 +100,6 @@ uint propagate_index(ivec3 cell, uint stack, uint cells, uint along)
 }
 
 // ---- one hop (Eqs 1-4) ----------------------------------------------------------------------------
-//
-// What is kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to
-// 1, and the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
-
-// A cell: L in units of the irradiance, 1 - a, and the fractions of L that go to each of the four
-// neighbours beside and to the one behind; the rest goes to the one in front. The fractions are the
-// distribution integrated over the cones of Eq 3, whose half angle has the cosine `edge` (45 and 135 degrees:
-// PROPAGATE_CONE). With s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which
-// has no division by a. A lobe that points backward is the mirror image.
-vec4 propagate_state(float light, float spread, float edge)
-{
-    float narrow = min(spread, 2.0 - spread); // 1 - |a|
-    float s_ahead = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 - edge));
-    float s_behind = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 + edge));
-    float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow)); // of the cone ahead
-    float behind = narrow * (1.0 - edge) / (s_behind * (s_behind + 2.0 - narrow));
-    float side = 0.25 * (outside - behind);
-    return vec4(light, spread, side, spread <= 1.0 ? behind : 1.0 - outside);
-}
-
-// What of a cell's light goes `layers` steps along d.
-float propagate_part(vec4 state, int layers)
-{
-    float part = layers == 0 ? state.z : layers < 0 ? state.w : 1.0 - 4.0 * state.z - state.w;
-    return state.x * part;
-}
 
 // -ln g for 0 < g < 1; the series where a rounded ln would lose digits: -ln g = 2 artanh((1-g)/(1+g)).
 float propagate_minus_log(float g)
@@ -147,12 +120,6 @@ float propagate_decay(float depth, float g, uint rate)
         return 0.0;
     }
     return g > 0.0 ? propagate_minus_log(g) * depth : 1e30; // g = 0: isotropic after any event
-}
-
-// 1 - e^-x, x >= 0.
-float propagate_loss(float x)
-{
-    return x < 0.05 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))) : 1.0 - exp(-x);
 }
 
 // A cell as buffer "cells" has it.
