@@ -1,4 +1,4 @@
-// constellation.c -- method "constellation": an environment as a constellation of distant lights, ray marching back to front
+// method.c -- method "constellation": an environment as a constellation of distant lights, ray marching back to front
 // with a shadow ray per light and slice, as published in 2008.
 //
 // Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).

@@ -1,4 +1,4 @@
-// gradient.c -- method "gradient": light that has scattered once, from few samples that know its gradient (Ren, Zhou, Lin and
+// method.c -- method "gradient": light that has scattered once, from few samples that know its gradient (Ren, Zhou, Lin and
 // Guo 2008).
 //
 // Samples are split where the light that they stand for is not as they say; the march reads the field that is made of them

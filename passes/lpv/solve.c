@@ -1,4 +1,4 @@
-// lpv.c -- see lpv.h.
+// solve.c -- see solve.h.
 #include "solve.h"
 #include <tyndall/extend/limits.h>
 #include <string.h>

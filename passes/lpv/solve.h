@@ -1,4 +1,4 @@
-// lpv.h -- the solver of method "lpv": power moves on from cell to cell of one lattice.
+// solve.h -- the solver of method "lpv": power moves on from cell to cell of one lattice.
 #pragma once
 #include <tyndall/extend/field.h>
 #include "lpv/lpv.h"

@@ -1,4 +1,4 @@
-// photon.c -- method "photon": temporally coherent photon mapping (Elek, Ritschel, Wilkie and Seidel 2012).
+// method.c -- method "photon": temporally coherent photon mapping (Elek, Ritschel, Wilkie and Seidel 2012).
 //
 // Photons of all lights are traced through the medium, a generation in each frame; a coarse cache holds the light of the last
 // ones, as lobes about its net flux. It is upsampled with the medium as guide, and marched, with what suns and lamps have

@@ -1,4 +1,4 @@
-// photon.c -- see photon.h.
+// solve.c -- see solve.h.
 #include "solve.h"
 #include <tyndall/extend/hash.h>
 #include <tyndall/extend/path_scene.h>

@@ -1,4 +1,4 @@
-// photon.h -- the solver of method "photon": caches of photons, renewed a few in a frame.
+// solve.h -- the solver of method "photon": caches of photons, renewed a few in a frame.
 #pragma once
 #include <tyndall/extend/field.h>
 #include "photon_cache/photon_cache.h"

@@ -1,4 +1,4 @@
-// pop_paper.c -- method "pop-paper": principal-ordinates propagation as published in 2014.
+// method.c -- method "pop-paper": principal-ordinates propagation as published in 2014.
 //
 // The light of each sun, ordinate and lamp, scattered or not, moves from cell to cell of its own aligned grid;
 // what all of them send to the eye is merged into one grid, upsampled with the medium as guide and

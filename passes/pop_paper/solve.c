@@ -1,4 +1,4 @@
-// propagation.c -- see propagation.h.
+// solve.c -- see solve.h.
 #include "solve.h"
 #include <math.h>
 #include <string.h>

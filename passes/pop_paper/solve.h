@@ -1,4 +1,4 @@
-// propagation.h -- the solver of method "pop-paper": light moves from cell to cell of its own aligned grid.
+// solve.h -- the solver of method "pop-paper": light moves from cell to cell of its own aligned grid.
 #pragma once
 #include <tyndall/extend/field.h>
 #include "merge_grids/merge_grids.h"

@@ -1,4 +1,4 @@
-// shdom.c -- method "shdom": spherical harmonics and discrete ordinates (Evans 1998), to be compared with.
+// method.c -- method "shdom": spherical harmonics and discrete ordinates (Evans 1998), to be compared with.
 //
 // Suns, lamps and principal ordinates of an environment light the cells of a lattice; what scatters is solved for there in a
 // few bands of spherical harmonics. The march adds what scatters once of suns and lamps, sharply (passes/shdom/shdom.md).

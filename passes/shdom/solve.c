@@ -1,4 +1,4 @@
-// shdom.c -- see shdom.h.
+// solve.c -- see solve.h.
 #include "solve.h"
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-// shdom.h -- the solver of method "shdom": spherical harmonics and discrete ordinates on the lattice.
+// solve.h -- the solver of method "shdom": spherical harmonics and discrete ordinates on the lattice.
 #pragma once
 #include <tyndall/extend/field.h>
 #include "shdom/shdom.h"
