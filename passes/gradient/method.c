@@ -2,7 +2,7 @@
 // Guo 2008).
 //
 // Samples are split where the light that they stand for is not as they say; the march reads the field that is made of them
-// (passes/gradient/gradient.md). An environment shines as suns and distant lights, past what surfaces hide of it. Samples may read what has
+// (gradient.md). An environment shines as suns and distant lights, past what surfaces hide of it. Samples may read what has
 // scattered more than once from the lattice of method "pop".
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
@@ -32,7 +32,8 @@ static double flat(const tyn_regime *r)
             {"field: the medium is %.3g mean free paths deep, and light that enters is lost "      \
              "within its cells (about %g %% of what has scattered once): -D gradient.field",       \
              {TYN_FIGURE(depth), TYN_LIMIT_ERROR}},                                                \
-        .source = "passes/gradient/gradient.md, \"Limits\"", .warned = {TYN_ABOVE(depth, 70)}, .warning = {   \
+        .source = "passes/gradient/gradient.md, \"Limits\"", .warned = {TYN_ABOVE(depth, 70)},     \
+        .warning = {                                                                               \
             "accuracy: the medium is %.3g mean free paths deep; light that enters is lost "        \
             "within the cells of the field: 36 %% of it at 100 in a cube, all of it at 1000",      \
             {TYN_FIGURE(depth)}                                                                    \
@@ -45,8 +46,8 @@ static double flat(const tyn_regime *r)
         .advice = {"flat media: few cells of the field lie through the shortest side (about %g "   \
                    "%% off)",                                                                      \
                    {TYN_LIMIT_ERROR}},                                                             \
-        .source = "passes/gradient/gradient.md, \"Limits\"", .warned = {TYN_ABOVE(cells_through, 0)},         \
-        .warning = {                                                                               \
+        .source = "passes/gradient/gradient.md, \"Limits\"",                                       \
+        .warned = {TYN_ABOVE(cells_through, 0)}, .warning = {                                      \
             "accuracy: the medium's shortest side is %.2g of a cell of 32 along the longest; few " \
             "cells of the field lie through it",                                                   \
             {TYN_FIGURE(cells_through)}                                                            \
@@ -79,7 +80,11 @@ static const tyn_limit limits[] = {
 
 // With what has scattered more than once.
 static const tyn_limit limits_multiple[] = {
-    TYN_LIMIT_NOT_PERIODIC("passes/gradient/gradient.md, \"Limits\""), THICK, FLAT, TYN_LIMIT_FLOATS, {NULL}};
+    TYN_LIMIT_NOT_PERIODIC("passes/gradient/gradient.md, \"Limits\""),
+    THICK,
+    FLAT,
+    TYN_LIMIT_FLOATS,
+    {NULL}};
 
 static const int32_t column_cells = 32; // in which the medium dims the sky's light on surfaces
 

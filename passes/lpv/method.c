@@ -1,7 +1,7 @@
 // method.c -- method "lpv": light propagation volumes with a medium (Billeter, Sintorn and Assarsson 2012).
 //
 // Light that has not scattered is marched sharply, as in "single". What it scatters, and what surfaces reflect of it, starts
-// in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (passes/lpv/lpv.md). An environment shines along
+// in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (lpv.md). An environment shines along
 // principal ordinates; among surfaces its mean enters the lattice from all sides.
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
