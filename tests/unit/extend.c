@@ -1,5 +1,7 @@
 // extend.c -- what plugins rely on: the layout behind TYN_EXTEND_ABI, and that what does not fit is refused with one line.
 #include <tyndall/extend/plugin.h>
+#include "registry/addition.h"
+#include "registry/built_in.h"
 #include "registry/registry.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/common/counters.h"
@@ -143,6 +145,12 @@ static void change_nothing(tyn_graph *g, const tyn_job *job, tyn_picture *pictur
     (void)picture;
 }
 
+static void prepare_nothing(tyn_graph *g, tyn_job *job)
+{
+    (void)g;
+    (void)job;
+}
+
 static const uint32_t words[5] = {0x07230203};
 static const tyn_port one_port[] = {{.name = "out", .dir = TYN_OUT, .meaning = "nothing"}};
 static const tyn_binding one_binding[] = {{0, TYN_USE_STORAGE_WRITE, false}};
@@ -266,13 +274,59 @@ static void hooks(void **state)
     assert_int_equal(count, own + 1);
 }
 
+// Methods that are registered after a hook list its passes behind the one that it follows; those before do not.
+static void followers(void **state)
+{
+    (void)state;
+    static const char *const unknown[] = {"nowhere", NULL}, *const known[] = {"added", NULL};
+    static const char *const followed[] = {"medium", "export", NULL};
+    tyn_picture_hook hook = {.name = "lost", .prepare = prepare_nothing, .passes = unknown};
+    REFUSED(tyn_picture_hook_register(&hook, &log), "hook 'lost' names the pass 'nowhere'");
+    static const tyn_picture_hook follower = {
+        .name = "follower", .prepare = prepare_nothing, .follows = "medium", .passes = known};
+    assert_int_equal(tyn_picture_hook_register(&follower, NULL), TYN_OK);
+    static tyn_method late;
+    late = good_method;
+    late.info.name = "late";
+    late.passes = followed;
+    assert_int_equal(tyn_method_register(&late, NULL), TYN_OK);
+    tyn_method_info info;
+    assert_true(tyn_method_named("late", &info));
+    assert_string_equal(info.passes[0]->name, "medium");
+    assert_ptr_equal(info.passes[1], &good_pass);
+    assert_string_equal(info.passes[2]->name, "export");
+    assert_null(info.passes[3]);
+    assert_true(tyn_method_named("added", &info));
+    assert_null(info.passes[2]);
+}
+
+// What the library is built of fits as a plugin must.
+static void built_in(void **state)
+{
+    (void)state;
+    uint32_t num_passes = 0, num_methods = 0;
+    for (uint32_t i = 0; tyn_built_in[i]; i++) {
+        tyn_addition a = tyn_addition_of(tyn_built_in[i]);
+        a.who = "built in";
+        const tyn_log log = {hear, &(said){0}, TYN_LOG_WARN};
+        assert_true(i == 0 || tyn_addition_check(&a, &log)); // the reference is the core's alone
+        for (uint32_t k = 0; k < a.num_methods; k++) {
+            assert_non_null(tyn_method_find(a.methods[k]->info.name));
+        }
+        num_passes += a.num_passes;
+        num_methods += a.num_methods;
+    }
+    assert_true(tyn_num_passes() >= num_passes && tyn_num_methods() >= num_methods);
+    for (uint32_t i = 0; i < tyn_num_passes(); i++) { // no name is there twice
+        assert_ptr_equal(tyn_pass_find(tyn_pass_at(i)->name), tyn_pass_at(i));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layout),
-        cmocka_unit_test(passes),
-        cmocka_unit_test(methods),
-        cmocka_unit_test(hooks),
+        cmocka_unit_test(layout), cmocka_unit_test(passes),    cmocka_unit_test(methods),
+        cmocka_unit_test(hooks),  cmocka_unit_test(followers), cmocka_unit_test(built_in),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
