@@ -160,4 +160,4 @@ static void show(tyn_graph *g, const tyn_job *job, tyn_picture *picture)
 }
 
 static const char *const passes[] = {"impostor_camera", "impostor", NULL};
-const tyn_picture_hook tyn_hook_impostor = {"impostor", reads, show, prepare, "raymarch", passes};
+const tyn_picture_hook tyn_hook_impostor = {"impostor", reads, show, prepare, "composite", passes};
