@@ -14,7 +14,7 @@
 // BALANCE       buffer: tyn_balance
 // COMPOSITE     into tyn_frame.color
 // FLUXES        buffer: tyn_fluxes (path)
-// LIGHT         into tyn_frame.light 
+// LIGHT         into tyn_frame.light
 // LOW           RGBA32F: what single precision has lost of the mean: radiance and alpha less this. RADIANCE, LOW and DEVIATION
 //               are all that the samples so far have left, for tyn_resume.
 // DEVIATION     RGBA32F; RGB: sum of squared deviations of the radiance; A: mean alpha
