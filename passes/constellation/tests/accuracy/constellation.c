@@ -96,13 +96,15 @@ static void same_suns(void **state)
         }
         picture path = reference_of(*state, scene, 512);
         const picture_error e = compare(*state, scene, &path, NULL);
-        const picture_error printed =
-            compare(*state, scene, &path, "constellation.quadrature=printed");
-        const picture_error coarse = compare(*state, scene, &path, "constellation.slice=2");
-        print_message("%-20s %.2f %% (noise %.2f %%, bias %+.2f %%); as printed %.2f %%; slices 2 "
-                      "voxels apart %.2f %%\n",
-                      v->name, 100 * e.reported, 100 * e.noise, 100 * e.bias,
-                      100 * printed.reported, 100 * coarse.reported);
+        print_message("%-20s %.2f %% (noise %.2f %%, bias %+.2f %%)\n", v->name, 100 * e.reported,
+                      100 * e.noise, 100 * e.bias);
+        if (getenv("TYN_LONG")) { // figures of the page, which bound nothing
+            const picture_error printed =
+                compare(*state, scene, &path, "constellation.quadrature=printed");
+            const picture_error coarse = compare(*state, scene, &path, "constellation.slice=2");
+            print_message("    as printed %.2f %%; slices 2 voxels apart %.2f %%\n",
+                          100 * printed.reported, 100 * coarse.reported);
+        }
         assert_true(e.reported < 0.02); // 2 %, whatever the bound
         assert_true(within(e.rel_l1, v->bound, BOUND_NOISE, "same suns, %s", v->name));
         picture_free(&path);
