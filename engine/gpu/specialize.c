@@ -607,7 +607,8 @@ size_t tyn_spirv_specialize(const uint32_t *words, size_t count, const uint32_t 
 {
     module m = {.words = words, .count = count, .out = out};
     if (count <= HEADER || !is_whole(&m)) {
-        return 0;
+        memcpy(out, words, count * sizeof *words);
+        return count;
     }
     m.bound = words[BOUND];
     m.ids = calloc(m.bound, sizeof *m.ids);
