@@ -4,6 +4,7 @@
 #include "offline_frame.h"
 #include "references.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,8 +69,12 @@ static uint64_t next_key(path_run *r, const tyn_scene *scene, tyn_view *v, uint3
     return r->kept ? reference_key(scene, v) : 0;
 }
 
-static void run(path_run *r, const tyn_scene *scene, const tyn_view *view)
+// `key`: of a result that should have been kept, which tools/totals counts; else 0.
+static void run(path_run *r, const tyn_scene *scene, const tyn_view *view, uint64_t key)
 {
+    if (key) {
+        printf("reference: %016llx, not in tests/references\n", (unsigned long long)key);
+    }
     offline_frame(r->off, scene, view);
     assert_int_equal(tyn_device_validation_messages(r->dev), 0);
 }
@@ -93,7 +98,7 @@ void path_run_picture(path_run *r, picture *p, const tyn_scene *scene, const tyn
     if (key && reference_read_picture(key, p)) {
         return;
     }
-    run(r, scene, &v);
+    run(r, scene, &v, key);
     *p = (picture){.width = v.width, .height = v.height};
     size_t pixels = (size_t)p->width * p->height;
     p->rgb = copy_rgb(tyn_offline_output(r->off, TYN_OUTPUT_RADIANCE), pixels);
@@ -121,7 +126,7 @@ const float *path_run_layer(path_run *r, const tyn_scene *scene, const tyn_view 
     v.outputs = TYN_OUTPUT_RADIANCE | output;
     assert_false(r->kept);
     next_key(r, scene, &v, samples);
-    run(r, scene, &v);
+    run(r, scene, &v, 0);
     return tyn_offline_output(r->off, output);
 }
 
@@ -146,7 +151,7 @@ const tyn_probe_result *path_run_probe(path_run *r, const tyn_scene *scene,
     free(r->probes);
     r->probes = malloc(num_points * sizeof *r->probes);
     if (!key || !reference_read_floats(key, (float *)r->probes, count)) {
-        run(r, scene, &v);
+        run(r, scene, &v, key);
         memcpy(r->probes, tyn_offline_output(r->off, TYN_OUTPUT_PROBE), count * sizeof(float));
         if (key) {
             reference_write_floats(key, (const float *)r->probes, count);
@@ -161,7 +166,7 @@ const tyn_balance *path_run_balance(path_run *r, const tyn_scene *scene, uint32_
     const uint64_t key = next_key(r, scene, &v, samples);
     const size_t count = sizeof r->balance / sizeof(double);
     if (!key || !reference_read_doubles(key, (double *)&r->balance, count)) {
-        run(r, scene, &v);
+        run(r, scene, &v, key);
         r->balance = *(const tyn_balance *)tyn_offline_output(r->off, TYN_OUTPUT_BALANCE);
         if (key) {
             reference_write_doubles(key, (const double *)&r->balance, count);
@@ -176,7 +181,7 @@ const tyn_fluxes *path_run_fluxes(path_run *r, const tyn_scene *scene, uint32_t 
     const uint64_t key = next_key(r, scene, &v, samples);
     const size_t count = sizeof r->fluxes / sizeof(float);
     if (!key || !reference_read_floats(key, (float *)&r->fluxes, count)) {
-        run(r, scene, &v);
+        run(r, scene, &v, key);
         r->fluxes = *(const tyn_fluxes *)tyn_offline_output(r->off, TYN_OUTPUT_FLUXES);
         if (key) {
             reference_write_floats(key, (const float *)&r->fluxes, count);
