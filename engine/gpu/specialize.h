@@ -1,7 +1,7 @@
 // specialize.h -- SPIR-V with its specialization constants filled in, without the code that they switch off.
 //
 // Drivers translate and inline every function and branch of a module before they fold constants. A kernel with 32 features
-// pays for all of them in every variant: without what is off the ray march compiles eight times as fast on lavapipe.
+// would pay for all of them in every variant.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>

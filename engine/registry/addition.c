@@ -91,12 +91,12 @@ static bool check_pass(const char *who, const tyn_pass_desc *pass, const tyn_log
     if (!pass->summary || !pass->declare || !pass->record || !pass->ports ||
         (pass->num_kernels && !pass->kernels)) {
         REFUSE("%s: pass '%s': summary, ports, kernels, declare and record are required", who,
-              pass->name);
+               pass->name);
     }
     if (!pass->num_ports || pass->num_ports > TYN_MAX_PORTS ||
         (pass->num_params && !pass->params) || pass->debug_port >= pass->num_ports) {
         REFUSE("%s: pass '%s': %u ports; it must have 1 to %d, the debug port %u among them", who,
-              pass->name, pass->num_ports, TYN_MAX_PORTS, pass->debug_port);
+               pass->name, pass->num_ports, TYN_MAX_PORTS, pass->debug_port);
     }
     bool fit = true;
     for (uint32_t i = 0; i < pass->num_ports; i++) {

@@ -9,8 +9,10 @@
 
 // Light is kept apart by where it came from, in `lobes` of a cell: the strongest suns, regions of the map, all other. A lobe has
 // two quads of words, which are in rings of their own, as a device need not bind more than 128 MiB. "Mean": over the channels.
-#define PHOTON_ORDER 3 // of the first quad, behind the channels: mean times scatterings / PHOTON_ORDER_UNIT
-#define PHOTON_COUNT 3 // of the second, behind the mean times direction of travel along the axes of M: deposits
+// Of the first quad, behind the channels: mean times scatterings / PHOTON_ORDER_UNIT.
+#define PHOTON_ORDER 3
+// Of the second, behind the mean times direction of travel along the axes of M: deposits.
+#define PHOTON_COUNT 3
 #define PHOTON_MOST_LOBES 16
 #define PHOTON_MOST_BYTES 134217728 // of a ring
 
