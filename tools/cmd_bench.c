@@ -20,7 +20,7 @@
 
 typedef struct bench_args {
     machine_options machine;
-    const char *suite, *report, *scenes, *bands, *fronts, *axis;
+    const char *suite, *report, *scenes, *bands, *fronts, *axis, *methods;
     bool json, fresh, references, stress, quick;
 } bench_args;
 
@@ -235,6 +235,7 @@ static bool check_options(app *a, const bench_args *args)
          "goes with --suite and --scenes alone: nothing is measured"},
         {args->quick, "quick", args->stress, "needs --stress"},
         {args->axis, "axis", args->stress, "needs --stress"},
+        {args->methods, "methods", args->stress, "needs --stress: a suite names its runs"},
     };
     for (size_t i = 0; i < ARRAY_SIZE(rules); i++) {
         if (rules[i].given && !rules[i].needed) {
@@ -245,6 +246,11 @@ static bool check_options(app *a, const bench_args *args)
     if (args->axis && !stress_has_axis(args->axis)) {
         app_error(a, "--axis: no axis has '%s' in its name (docs/stress.md lists them)",
                   args->axis);
+        return false;
+    }
+    char unknown[64];
+    if (!stress_has_methods(args->methods, unknown)) {
+        app_error(a, "--methods: '%s' is no method (tyndall info --methods lists them)", unknown);
         return false;
     }
     return true;
@@ -268,7 +274,7 @@ static int run_bench(app *a, const void *arguments)
         return EXIT_WRONG;
     }
     if (args->stress) {
-        const stress_options options = {.quick = args->quick, .axis = args->axis};
+        const stress_options options = {.quick = args->quick, .axis = args->axis, .methods = args->methods};
         return stress_command(a, &args->machine, &options, args->report, args->json);
     }
     char *samples = args->scenes ? text_format("%s", args->scenes) : data_folder_scenes();
@@ -317,6 +323,7 @@ static const option bench_table[] = {
      "instead of a suite: where numbers get extreme (docs/stress.md)"},
     {0, "quick", OPT_FLAG, AT(quick), NULL, "with --stress: a minute instead of ten"},
     {0, "axis", OPT_TEXT, AT(axis), "NAME", "with --stress: axes with this in their names"},
+    {0, "methods", OPT_TEXT, AT(methods), "NAMES", "with --stress: these alone, with commas between"},
     {0, "json", OPT_FLAG, AT(json), NULL, "print report.json instead of the table"},
 };
 static const opt_group groups[] = {

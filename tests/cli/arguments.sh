@@ -185,6 +185,8 @@ echo '{"name": "x", "block": 4, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]
 refuses 2 "--suite goes with no --stress" bench --stress --axis nosuch --suite nothere.json --bands nothere.json
 refuses 2 "--axis: no axis has 'nosuch'" bench --stress --axis nosuch
 refuses 2 "--quick needs --stress" bench --quick --suite block.json
+refuses 2 "--methods: 'nosuch' is no method" bench --stress --methods pop,nosuch
+refuses 2 "--methods needs --stress" bench --methods pop --suite block.json
 refuses 2 "--axis needs --stress" bench --axis sigma --suite block.json
 refuses 2 "--fresh needs --report" bench --fresh --suite block.json
 refuses 2 "--write-fronts needs a suite whose \"block\" is 8, not 4" \

@@ -207,9 +207,37 @@ static bool belongs(const stress_options *o, const stress_case *c, const tyn_met
     return (!o->quick || c->quick) && (c->answer != STRESS_BY_IMBALANCE || tells);
 }
 
+// The next of names with commas between; false: there are no more. `*at` begins as the list, or as NULL.
+static bool next_name(const char **at, char name[64])
+{
+    if (!*at) {
+        return false;
+    }
+    const size_t length = strcspn(*at, ",");
+    snprintf(name, 64, "%.*s", (int)length, *at);
+    *at = (*at)[length] ? *at + length + 1 : NULL;
+    return true;
+}
+
 static bool is_asked(const stress_options *o, const stress_case *c, const char *with)
 {
-    return (!o->axis || strstr(c->axis, o->axis)) && (!o->method || strcmp(o->method, with) == 0);
+    char name[64];
+    bool listed = !o->methods;
+    for (const char *at = o->methods; next_name(&at, name);) {
+        listed = listed || strcmp(name, with) == 0;
+    }
+    return listed && (!o->axis || strstr(c->axis, o->axis));
+}
+
+bool stress_has_methods(const char *methods, char name[64])
+{
+    tyn_method_info info;
+    for (const char *at = methods; next_name(&at, name);) {
+        if (!tyn_method_named(name, &info)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool stress_has_axis(const char *part)

@@ -9,9 +9,9 @@
 #include <tyndall/device.h>
 
 typedef struct stress_options {
-    bool quick;         // some cases of every axis: a minute instead of ten
-    const char *axis;   // NULL: all
-    const char *method; // NULL: all
+    bool quick;          // some cases of every axis: a minute instead of ten
+    const char *axis;    // NULL: all
+    const char *methods; // names with commas between; NULL: all
 } stress_options;
 
 // Runs the cases and prints a line each while `table`; fills the object `stress`. Cells of `before` (NULL: none) that
@@ -20,6 +20,8 @@ int stress_run(app *a, tyn_device *device, const stress_options *options, bool t
                const cJSON *before, cJSON *stress);
 
 bool stress_has_axis(const char *part); // an axis with this in its name
+// Is each of the names with commas between a method? Else the first that is not is `name`, as far as there is room.
+bool stress_has_methods(const char *methods, char name[64]);
 
 // The heat table: a row of cases for every axis and method, a letter each.
 void stress_print(const cJSON *stress);
