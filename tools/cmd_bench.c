@@ -274,7 +274,8 @@ static int run_bench(app *a, const void *arguments)
         return EXIT_WRONG;
     }
     if (args->stress) {
-        const stress_options options = {.quick = args->quick, .axis = args->axis, .methods = args->methods};
+        const stress_options options = {
+            .quick = args->quick, .axis = args->axis, .methods = args->methods};
         return stress_command(a, &args->machine, &options, args->report, args->json);
     }
     char *samples = args->scenes ? text_format("%s", args->scenes) : data_folder_scenes();
@@ -323,7 +324,8 @@ static const option bench_table[] = {
      "instead of a suite: where numbers get extreme (docs/stress.md)"},
     {0, "quick", OPT_FLAG, AT(quick), NULL, "with --stress: a minute instead of ten"},
     {0, "axis", OPT_TEXT, AT(axis), "NAME", "with --stress: axes with this in their names"},
-    {0, "methods", OPT_TEXT, AT(methods), "NAMES", "with --stress: these alone, with commas between"},
+    {0, "methods", OPT_TEXT, AT(methods), "NAMES",
+     "with --stress: these alone, with commas between"},
     {0, "json", OPT_FLAG, AT(json), NULL, "print report.json instead of the table"},
 };
 static const opt_group groups[] = {
