@@ -250,6 +250,9 @@ static char *dump_dot(tyn_graph *g, const tyn_pass_desc *const *passes)
 
 char *tyn_graph_dump(tyn_graph *g, bool dot, const tyn_pass_desc *const *passes)
 {
+    if (!g->current) {
+        return NULL; // nodes have no slots yet
+    }
     graph_cull(g);
     return dot ? dump_dot(g, passes) : dump_text(g, passes);
 }

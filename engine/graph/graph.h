@@ -107,5 +107,5 @@ void tyn_graph_memory(const tyn_graph *g, uint64_t *persistent, uint64_t *transi
 
 // Text or Graphviz of the compiled graph: nodes, resources, lifetimes, barriers, what is culled and
 // why. `passes`: those that could have been declared, to the first NULL, to tell which were left out and what they
-// are for; may be NULL. The caller frees the string.
+// are for; may be NULL. The caller frees the string; NULL: not compiled, or no memory.
 char *tyn_graph_dump(tyn_graph *g, bool dot, const tyn_pass_desc *const *passes);

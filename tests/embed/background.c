@@ -31,6 +31,7 @@ static void threads_compile_and_frames_leave_the_picture_alone(void **state)
             assert_true(left <= last);
             last = left;
             assert_int_equal(record(f, ctx, true), TYN_PENDING);
+            assert_null(tyn_context_graph(ctx, false)); // nothing is compiled yet
             expect_untouched(f);
             frames++;
             usleep(20000);

@@ -266,7 +266,7 @@ TYN_API void tyn_context_inspect(tyn_context *ctx, const char *pass);
 // Of the last finished record. False: the frame has no such node, or what it makes is no image.
 TYN_API bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection);
 
-// The compiled graph as text or Graphviz; freed with free().
+// The compiled graph as text or Graphviz; freed with free(). NULL: the last prepare or record did not give TYN_OK.
 TYN_API char *tyn_context_graph(tyn_context *ctx, bool dot);
 
 #ifdef __cplusplus
