@@ -3,7 +3,6 @@
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/shadow_map/shadow_map.h"
-#include "passes/light_cells/light_cells.h"
 #include "passes/radial_beam/radial_beam.h"
 #include "passes/radial_lights/radial_lights.h"
 #include "passes/rsm/rsm.h"
