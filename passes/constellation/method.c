@@ -6,6 +6,7 @@
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "constellation/constellation.h"
+#include "passes/light_list/list.h"
 #include "validity_mask/validity_mask.h"
 #include "voxel_distance/voxel_distance.h"
 #include <string.h>

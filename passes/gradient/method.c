@@ -7,6 +7,7 @@
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "gradient/gradient.h"
+#include "passes/light_list/list.h"
 #include <math.h>
 #include <string.h>
 
@@ -260,8 +261,7 @@ static const char *const passes[] = {
     TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
     TYN_LAMP_PASSES(TYN_PASS_NAME),
     TYN_SKY_PASSES(TYN_PASS_NAME),
-    "median_cut",
-    "light_list",
+    TYN_LIST_PASSES(TYN_PASS_NAME),
     "gradient",
     TYN_CELL_PASSES(TYN_PASS_NAME),
     TYN_LATTICE_PASSES(TYN_PASS_NAME),

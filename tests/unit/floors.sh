@@ -2,7 +2,7 @@
 # floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines, and that passes have tests.
 #
 # A module is a folder passes/MODULE with a module.c. It sees public headers, shaders/ and itself; of itself its passes see their
-# own folders and common/; nobody sees modules.
+# own folders and common/; nobody sees modules. One without a method.c is shared: modules see its headers, their passes its common/.
 #
 # Floors, bottom to top: base < gpu, scene < io < graph < registry < frame < passes < methods/job < methods/light
 # < methods/solve < methods/view < methods < tools, samples, tests. A file includes its own folder and lower floors only;
@@ -80,6 +80,7 @@ check()
     }
     # A pass is a table for the graph: it sees no more than that does.
     function reach(u) { return floor_of(u) == 3 ? 2.1 : floor_of(u) }
+    function shared(name) { return !exists("passes/" name "/method.c") }
     # Of a module and its parts "module/NAME", "module/NAME/PASS".
     function check_module(from, to, name,   f, t, part) {
         split(from, f, "/")
@@ -88,6 +89,8 @@ check()
         if (to == "shaders") { return }
         if (to ~ /^public\//) {
             if (part && lowest[substr(to, 8)] > 2.1) { fault(from " is below <" name ">") }
+        } else if (t[1] == "module" && t[2] != f[2] && shared(t[2]) && !shared(f[2])) {
+            if (t[3] == "" ? part : t[3] != "common") { fault(from " does not see " name " of " to) }
         } else if (t[1] != "module" || t[2] != f[2]) {
             fault("a module sees public headers, shaders and itself, not " name)
         } else if (part && (f[3] == "common" || t[3] != "common")) {
@@ -263,12 +266,17 @@ printf '%s\n' '#include "passes/methods/view/v.h"' > passes/methods/light/bad.c
 printf '%s\n' '#include "passes/methods/light/l.h"' '#include "passes/a/a.h"' '#include "frame/f.h"' \
     '#include <tyndall/context.h>' > passes/methods/view/good.c
 mkdir -p passes/m/one passes/m/two passes/m/common passes/m/tests/gpu passes/n
-: > passes/m/module.c; : > passes/n/module.c; : > passes/n/n.h; : > passes/m/one/one.h; : > passes/m/common/args.h
+: > passes/m/module.c; : > passes/m/method.c; : > passes/n/module.c; : > passes/n/method.c; : > passes/n/n.h; : > passes/m/one/one.h; : > passes/m/common/args.h
 : > engine/include/tyndall/extend/method.h
-printf '%s\n' '#include "one/one.h"' '#include "common/args.h"' '#include <tyndall/extend/method.h>' '#include "shaders/x/args.h"' > passes/m/good.c
-printf '%s\n' '#include "passes/a/a.h"' '#include "base/half.h"' '#include "passes/n/n.h"' > passes/m/bad.c
-printf '%s\n' '#include "one.h"' '#include "../common/args.h"' '#include <tyndall/pass.h>' > passes/m/one/good.c
-printf '%s\n' '#include "../one/one.h"' '#include <tyndall/extend/method.h>' > passes/m/two/bad.c
+mkdir -p passes/s/common passes/s/three passes/s/tests/gpu
+: > passes/s/module.c; : > passes/s/s.h; : > passes/s/common/args.h; : > passes/s/three/three.h; : > passes/s/tests/gpu/three.c
+echo "['gpu', 'three', files('tests/gpu/three.c')]" > passes/s/meson.build
+printf '%s\n' '#include "passes/n/n.h"' > passes/s/bad.c
+printf '%s\n' '#include "one/one.h"' '#include "common/args.h"' '#include <tyndall/extend/method.h>' '#include "shaders/x/args.h"' \
+    '#include "passes/s/s.h"' > passes/m/good.c
+printf '%s\n' '#include "passes/a/a.h"' '#include "base/half.h"' '#include "passes/n/n.h"' '#include "passes/s/three/three.h"' > passes/m/bad.c
+printf '%s\n' '#include "one.h"' '#include "../common/args.h"' '#include <tyndall/pass.h>' '#include "passes/s/common/args.h"' > passes/m/one/good.c
+printf '%s\n' '#include "../one/one.h"' '#include <tyndall/extend/method.h>' '#include "passes/s/s.h"' > passes/m/two/bad.c
 printf '%s\n' '#include "../one/one.h"' > passes/m/common/bad.glsl
 printf '%s\n' '#include "passes/m/one/one.h"' > passes/methods/bad.c
 printf '%s\n' '#include "engine/base/half.h"' > passes/m/tests/gpu/one.c
@@ -279,8 +287,8 @@ cd - > /dev/null
 status=0
 found=$(check "$self") || status=$?
 lines=$(printf '%s\n' "$found" | wc -l)
-if [ "$status" = 0 ] || [ "$lines" != 28 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
-    printf 'the check itself is broken: 28 faults expected, found %s:\n%s\n' "$lines" "$found"
+if [ "$status" = 0 ] || [ "$lines" != 31 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
+    printf 'the check itself is broken: 31 faults expected, found %s:\n%s\n' "$lines" "$found"
     exit 1
 fi
 status=0

@@ -15,8 +15,11 @@ FILES = {
     "shaders/light/sky.glsl": "float sky;\n",
     "passes/medium/medium.c": "int medium;\n",
     "passes/a/module.c": "int a;\n",
+    "passes/a/method.c": "int a_method;\n",
     "passes/a/tests/accuracy/a.c": "int test;\n",
     "passes/b/module.c": "int b;\n",
+    "passes/b/method.c": "int b_method;\n",
+    "passes/shared/module.c": "int shared;\n",
     "passes/b/b.comp": "float b;\n",
 }
 
@@ -56,6 +59,7 @@ def main():
         for path, left in {
             "engine/include/tyndall/pass.h": [], "engine/include/tyndall/extend/job.h": [], "shaders/light/sky.glsl": [],
             "passes/medium/medium.c": ["full-a", "full-b"], "passes/a/tests/accuracy/a.c": ["full-b"], "passes/b/b.comp": ["full-a"],
+            "passes/shared/module.c": [],
         }.items():
             write(root, path, "// a word\n" + FILES[path].replace(" ", "  "))
             assert kept(root) == ["full-a", "full-b"], f"{path}: a comment and spaces count"

@@ -2,8 +2,9 @@
 """readers.py SOURCE_ROOT -- who reads which file, from the #include lines.
 
 A file in shaders/ is there because several passes read it, or the engine: what one pass alone reads stands in its
-folder, what the passes of one module alone read in its common/. Of a pass nothing else sees but its header, NAME/NAME.h. Files
-of different folders include each other in no circle; a header and the source of its name are one.
+folder, what the passes of one module alone read in its common/. Of a pass nothing else sees but its header, NAME/NAME.h. Modules see
+the headers of a shared module, which has a module.c and no method.c. Files of different folders include each other in no
+circle; a header and the source of its name are one.
 """
 import os
 import re
@@ -102,7 +103,8 @@ def faults(root):
         if not file.startswith("shaders/"):
             for target in sorted(graph[file]):
                 folder, name = os.path.split(target)
-                shared = folder.startswith("passes/methods") or os.path.basename(folder) == "common"
+                shared = folder.startswith("passes/methods") or os.path.basename(folder) == "common" \
+                    or folder + "/module.c" in graph and folder + "/method.c" not in graph
                 own = folder == os.path.dirname(file)
                 if folder.startswith("passes/") and not own and not shared and name != os.path.basename(folder) + ".h":
                     lines.append(f"{file}: includes {target}, which is private to its pass")

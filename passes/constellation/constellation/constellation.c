@@ -1,7 +1,7 @@
 // constellation.c -- the picture of the method constellation: slices back to front, with a shadow ray per light and slice.
 #include "constellation.h"
 #include "shaders/common/counters.h"
-#include "shaders/light/constellation_args.h"
+#include "passes/light_list/common/constellation_args.h"
 #include "constellation_march_coefficients.comp.h"
 #include "constellation_march_density.comp.h"
 #include <math.h>

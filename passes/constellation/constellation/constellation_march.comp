@@ -24,7 +24,7 @@ TYN_ARGS(constellation_args args);
 #include "shaders/medium/medium.glsl"
 layout(binding = 5) uniform sampler3D voxels_tex;
 layout(binding = 6) uniform usamplerBuffer light_list_texels;
-#include "shaders/light/light_list.glsl"
+#include "passes/light_list/common/light_list.glsl"
 #define SHADOWS_AT 7
 #include "shaders/light/shadow.glsl"
 TYN_UNIFORM(9, camera, camera_block camera);

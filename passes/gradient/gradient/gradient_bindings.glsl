@@ -19,7 +19,7 @@ layout(binding = 11) uniform sampler3D scattered_tex;
 TYN_UNIFORM(14, camera, camera_block camera);
 #include "shaders/common/camera.glsl"
 TYN_UPDATE(15, counters, counters_block counters);
-#include "shaders/light/light_list.glsl"
-#include "shaders/light/light_shades_args.h"
+#include "passes/light_list/common/light_list.glsl"
+#include "passes/light_list/common/light_shades_args.h"
 #include "gradient_light.glsl"
 #endif

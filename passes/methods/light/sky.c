@@ -4,13 +4,15 @@
 #include <tyndall/registry.h>
 #include <string.h>
 
-static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, tyn_ref *sums)
+// `suns`: they stay in the map.
+static void add_env_importance(tyn_graph *g, const tyn_job *job, bool suns, tyn_ref *sky,
+                               tyn_ref *sums)
 {
     const tyn_map_light *map = job->frame->map;
     tyn_env_importance_params params;
     tyn_settings_params(job->settings, &tyn_pass_env_importance, &params);
-    params.suns.num_suns = map->num_suns;
-    for (uint32_t i = 0; i < map->num_suns; i++) {
+    params.suns.num_suns = suns ? 0 : map->num_suns;
+    for (uint32_t i = 0; i < params.suns.num_suns; i++) {
         struct sky_sun *sun = &params.suns.suns[i];
         memcpy(sun->direction, map->suns[i].direction, sizeof sun->direction);
         memcpy(sun->around, map->suns[i].around, sizeof sun->around);
@@ -22,19 +24,11 @@ static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, t
     *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
 }
 
-tyn_ref tyn_add_sky_sums(tyn_graph *g, const tyn_job *job)
+tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job, bool suns)
 {
     tyn_ref sky, sums;
-    add_env_importance(g, job, &sky, &sums);
+    add_env_importance(g, job, suns, &sky, &sums);
     return sums;
-}
-
-tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job)
-{
-    const tyn_env_importance_params params = {{0}};
-    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_ENV_MAP] = job->refs.env_map};
-    tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
-    return refs[ENV_IMPORTANCE_PORT_SUMS];
 }
 
 // Where light counts for the picture; nothing without a camera.
@@ -133,7 +127,7 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
 
     tyn_ref refs[TYN_MAX_PORTS] = {[ORDINATES_PORT_ENVIRONMENT] = job->refs.environment};
     if (regions && env->has_map) {
-        add_env_importance(g, job, &sky->map, &refs[ORDINATES_PORT_SUMS]);
+        add_env_importance(g, job, false, &sky->map, &refs[ORDINATES_PORT_SUMS]);
         refs[ORDINATES_PORT_SKY] = sky->map;
     }
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS && !frame->empty;

@@ -5,5 +5,3 @@
 
 // Do surfaces reach beyond the medium's box by more than so many of its longest side?
 bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides);
-// Sums of the environment's map without its suns (sky_args.h: struct sky_sum).
-tyn_ref tyn_add_sky_sums(tyn_graph *g, const tyn_job *job);

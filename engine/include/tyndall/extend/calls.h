@@ -107,10 +107,7 @@
         (tyn_graph *g, const tyn_job *job, const uint32_t dims[3], tyn_medium_refs *medium, float texel[3]), \
         (g, job, dims, medium, texel)) \
     V(tyn_add_columns, (tyn_graph *g, const tyn_job *job, int32_t cells, tyn_sources *s), (g, job, cells, s)) \
-    X(tyn_light_list, tyn_add_light_list, \
-        (tyn_graph *g, const tyn_job *job, const tyn_sources *s, uint32_t lights, bool suns_apart), \
-        (g, job, s, lights, suns_apart)) \
-    X(tyn_ref, tyn_add_map_sums, (tyn_graph *g, const tyn_job *job), (g, job)) \
+    X(tyn_ref, tyn_add_map_sums, (tyn_graph *g, const tyn_job *job, bool suns), (g, job, suns)) \
     V(tyn_add_cells, (tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting, tyn_sources *s), \
         (g, job, cells, setting, s)) \
     X(tyn_ref, tyn_mean_environment, (const tyn_job *job, const tyn_sources *s), (job, s)) \

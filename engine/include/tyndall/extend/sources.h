@@ -115,8 +115,8 @@ static inline bool tyn_is_lit(const float radiance[3])
 {
     return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
 }
-// Sums of the environment's map over rectangles (sky_args.h: struct sky_sum), its suns among them.
-TYN_API tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job);
+// Sums of the environment's map over rectangles (sky_args.h: struct sky_sum), with its suns or without.
+TYN_API tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job, bool suns);
 // The medium on the lattice, walls, and the unscattered light of all sources above. `cells` along the longest side, as
 // the user's `setting` says, which is named in a warning. After all of them.
 TYN_API void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
@@ -128,19 +128,6 @@ TYN_API bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t
                                 tyn_medium_refs *medium, float texel[3]);
 // What the medium leaves of the ordinates on their way to so many cells along its longest side.
 TYN_API void tyn_add_columns(tyn_graph *g, const tyn_job *job, int32_t cells, tyn_sources *s);
-
-// All lights in one list, for methods that ask every light at every point.
-typedef struct tyn_light_list {
-    tyn_ref lights; // struct light_list_block
-    tyn_ref shades; // struct light_shades_block, where the sky has directions
-    uint32_t most;  // as many lights are in it at most
-} tyn_light_list;
-
-// Suns and lamps of the scene, and up to `lights` distant lights in the environment's place. After shadows and the sky's maps.
-// The suns of a map are among the distant lights, which are points, as published; or `suns_apart`: they have shadow maps as those of
-// the scene do, and distant lights are as wide as their regions.
-TYN_API tyn_light_list tyn_add_light_list(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
-                                          uint32_t lights, bool suns_apart);
 
 // Cells of the lattice within which all lamps are followed by the march: beams of spots farther, until they are as
 // wide.
@@ -173,7 +160,6 @@ TYN_API void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_v
 #define TYN_SUN_PASSES(X) X(beam), X(shadow_map)
 #define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
-#define TYN_LIST_PASSES(X) X(env_importance), X(median_cut), X(light_list)
 #define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
     X(lattice_cells), X(walls), X(walls_beyond), X(wall_light), X(rooms), X(columns_average),      \

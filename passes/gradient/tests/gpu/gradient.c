@@ -3,10 +3,10 @@
 #include "gpu_test.h"
 #include "numbers.h"
 #include "passes/gradient/gradient/gradient.h"
+#include "passes/light_list/common/light_list_args.h"
+#include "passes/light_list/common/light_shades_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/common/scene_args.h"
-#include "shaders/light/light_list_args.h"
-#include "shaders/light/light_shades_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

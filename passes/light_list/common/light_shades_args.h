@@ -7,7 +7,7 @@
 #ifndef TYN_LIGHT_SHADES_ARGS_H
 #define TYN_LIGHT_SHADES_ARGS_H
 #include "light_list_args.h"
-#include "ordinate_args.h"
+#include "shaders/light/ordinate_args.h"
 
 // Directions with a light of their own, and for each light that none is nearest to the one that is nearest to it.
 #define TYN_LIGHT_SHADES_MAX (TYN_ORDINATES_MAX + TYN_LIGHT_LIST_MAX)

@@ -4,7 +4,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "light_list_args.h"
-#include "shaders/light/light_shades_args.h"
+#include "../common/light_shades_args.h"
 
 typedef struct tyn_light_list_params {
     struct light_list_args listed; // set by the method

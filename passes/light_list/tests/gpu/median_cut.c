@@ -3,7 +3,7 @@
 #include "gpu_test.h"
 #include "numbers.h"
 #include "passes/env_importance/env_importance.h"
-#include "passes/median_cut/median_cut.h"
+#include "passes/light_list/median_cut/median_cut.h"
 #include "random_unit.h"
 #include "shaders/light/sky_args.h"
 #include <math.h>

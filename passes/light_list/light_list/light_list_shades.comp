@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "light_list_args.h"
-#include "shaders/light/light_shades_args.h"
+#include "../common/light_shades_args.h"
 #include "shaders/light/ordinate_args.h"
 
 layout(local_size_x = 256) in;

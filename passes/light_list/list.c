@@ -1,7 +1,7 @@
 // list.c -- all lights of a scene in one list.
-#include "passes/methods/light/sources.h"
-#include "passes/light_list/light_list.h"
-#include "passes/median_cut/median_cut.h"
+#include "list.h"
+#include "light_list/light_list.h"
+#include "median_cut/median_cut.h"
 #include <string.h>
 
 // The constellation of the environment, its suns among its lights or `suns_apart`; {0} if nothing shines from there.
@@ -14,8 +14,7 @@ static tyn_ref add_constellation(tyn_graph *g, const tyn_job *job, uint32_t ligh
     const tyn_median_cut_params params = {.lights = lights, .map = env->has_map};
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     if (env->has_map) {
-        refs[MEDIAN_CUT_PORT_SUMS] =
-            suns_apart ? tyn_add_sky_sums(g, job) : tyn_add_map_sums(g, job);
+        refs[MEDIAN_CUT_PORT_SUMS] = tyn_add_map_sums(g, job, !suns_apart);
     }
     tyn_graph_add(g, &tyn_pass_median_cut, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_median_cut, refs[MEDIAN_CUT_PORT_CONSTELLATION]);

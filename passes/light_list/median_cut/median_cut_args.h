@@ -1,7 +1,7 @@
 // median_cut_args.h -- the light constellation of an environment. Included by C and GLSL; scalar layout.
 #ifndef TYN_MEDIAN_CUT_ARGS_H
 #define TYN_MEDIAN_CUT_ARGS_H
-#include "shaders/light/constellation_args.h"
+#include "../common/constellation_args.h"
 
 struct median_cut_args {
     tyn_uint lights; // wanted: 1 .. TYN_CONSTELLATION_MAX

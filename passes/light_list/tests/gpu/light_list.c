@@ -1,7 +1,7 @@
 // light_list.c -- the list of all lights: a turned constellation, suns with and without shadow maps, lamps, and their mean; and
 // which maps of the sky's directions tell what hides them.
 #include "gpu_test.h"
-#include "passes/light_list/light_list.h"
+#include "passes/light_list/light_list/light_list.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 #include <string.h>

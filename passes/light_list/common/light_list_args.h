@@ -3,7 +3,7 @@
 #ifndef TYN_LIGHT_LIST_ARGS_H
 #define TYN_LIGHT_LIST_ARGS_H
 #include "constellation_args.h"
-#include "light_args.h"
+#include "shaders/light/light_args.h"
 
 #define TYN_LIGHT_LIST_MAX (TYN_CONSTELLATION_MAX + 68) // + TYN_LIGHTS_MAX
 

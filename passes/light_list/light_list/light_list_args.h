@@ -1,7 +1,7 @@
 // light_list_args.h -- push constants of the list of lights. Included by C and GLSL.
 #ifndef TYN_LIGHT_LIST_PASS_ARGS_H
 #define TYN_LIGHT_LIST_PASS_ARGS_H
-#include "shaders/light/light_list_args.h"
+#include "../common/light_list_args.h"
 #include "shaders/light/shadow_args.h"
 
 struct light_list_args {
