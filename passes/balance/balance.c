@@ -3,16 +3,8 @@
 #include "balance_args.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/common/balance_result.h"
-#include "balance.comp.h"
-#include "balance_lights.comp.h"
+#include "passes/balance_tables.h"
 #include <string.h>
-
-static const tyn_port ports[] = {BALANCE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(balance),
-    TYN_KERNEL(balance_lights),
-};
 
 // Parts of suns and of the sky, and as many lamps and VPLs as there may be.
 static uint32_t num_followed(const tyn_balance_params *p, bool sky)
@@ -54,7 +46,7 @@ static void record(tyn_recorder *r, const void *params)
         };
         memcpy(&lights.lo, p->box[0], sizeof lights.lo);
         memcpy(&lights.hi, p->box[1], sizeof lights.hi);
-        TYN_DISPATCH(r, .kernel = 1, .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
+        TYN_DISPATCH(r, .kernel = KERNEL_LIGHTS, .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
                      .args = &lights, .spec = &p->mode);
     }
     const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);

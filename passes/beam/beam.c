@@ -1,7 +1,6 @@
 // beam.c -- lays out the grids of the suns and sweeps them in one dispatch.
 #include "beam.h"
-#include "beam_density.comp.h"
-#include "beam_coefficients.comp.h"
+#include "passes/beam_tables.h"
 #include "shaders/common/counters.h"
 #include <math.h>
 #include <string.h>
@@ -13,15 +12,6 @@ enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 96, MAX_SAMPLES = 1024 };
 // Where nothing bounds a ray (periodic axes, light within a face) its length counts as this many
 // times the box.
 static const double unbounded = 1e6;
-
-static const tyn_port ports[] = {BEAM_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(beam_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients),
-};
 
 static const tyn_param params_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_beam_params, cells), 112, 1, MAX_CELLS, "cells",

@@ -1,23 +1,11 @@
 // columns.c -- two dispatches for all ordinates: march the columns of their grids, gather them to cells.
 #include "columns.h"
-#include "columns_density.comp.h"
-#include "columns_coefficients.comp.h"
-#include "columns_gather.comp.h"
+#include "passes/columns_tables.h"
 #include "shaders/common/counters.h"
 #include <math.h>
 
 // Of a storage buffer binding, which every device can do. The scratch of a batch stays below half.
 static const uint64_t max_bytes = 128u << 20, batch_bytes = 64u << 20;
-
-static const tyn_port ports[] = {COLUMNS_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, KERNEL_GATHER, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients),
-    [KERNEL_GATHER] = TYN_KERNEL(columns_gather),
-};
 
 static uint32_t components(const tyn_columns_params *p)
 {

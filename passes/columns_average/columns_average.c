@@ -1,7 +1,6 @@
 // columns_average.c -- the medium as coarse as columns between the lattice's cells can tell.
 #include "columns_average.h"
-#include "columns_average_coefficients.comp.h"
-#include "columns_average_density.comp.h"
+#include "passes/columns_average_tables.h"
 #include <math.h>
 #include <string.h>
 
@@ -18,15 +17,6 @@ bool tyn_columns_average_size(const struct medium_block *medium, const uint32_t 
     }
     return coarser;
 }
-
-static const tyn_port ports[] = {COLUMNS_AVERAGE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS };
-
-static const tyn_kernel kernels[] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_average_coefficients),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

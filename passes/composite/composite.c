@@ -1,22 +1,8 @@
 // composite.c -- lays the medium over the host's picture: color = color x transmittance + radiance.
 #include "composite.h"
 #include "composite_args.h"
-#include "composite_half.comp.h"
-#include "composite_float.comp.h"
-#include "composite_joint_half.comp.h"
-#include "composite_joint_float.comp.h"
+#include "passes/composite_tables.h"
 #include <string.h>
-
-static const tyn_port ports[] = {COMPOSITE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_FLOAT = 0, KERNEL_HALF, KERNEL_JOINT_FLOAT, KERNEL_JOINT_HALF, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_FLOAT] = TYN_KERNEL(composite_float),
-    [KERNEL_HALF] = TYN_KERNEL(composite_half),
-    [KERNEL_JOINT_FLOAT] = TYN_KERNEL(composite_joint_float),
-    [KERNEL_JOINT_HALF] = TYN_KERNEL(composite_joint_half),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -5,27 +5,13 @@
 // GPU: Fourier sums along the rows, Legendre functions across them.
 #include "env_glow.h"
 #include "env_glow_args.h"
-#include "env_glow_rows.comp.h"
-#include "env_glow_analyse.comp.h"
-#include "env_glow_smear.comp.h"
-#include "env_glow_texels.comp.h"
+#include "passes/env_glow_tables.h"
 #include "shaders/common/counters.h"
 #include <math.h>
 
 #define PI 3.14159265358979323846
 
 enum { DEGREES = TYN_GLOW_HEIGHT };
-
-static const tyn_port ports[] = {ENV_GLOW_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_ROWS, KERNEL_ANALYSE, KERNEL_SMEAR, KERNEL_TEXELS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(env_glow_rows),
-    [KERNEL_ANALYSE] = TYN_KERNEL(env_glow_analyse),
-    [KERNEL_SMEAR] = TYN_KERNEL(env_glow_smear),
-    [KERNEL_TEXELS] = TYN_KERNEL(env_glow_texels),
-};
 
 // ---- the series -----------------------------------------------------------------------------------
 

@@ -1,20 +1,6 @@
 // env_importance.c -- an environment map without its suns, as a pyramid by solid angle.
 #include "env_importance.h"
-#include "env_importance_base.comp.h"
-#include "env_importance_columns.comp.h"
-#include "env_importance_mips.comp.h"
-#include "env_importance_rows.comp.h"
-
-static const tyn_port ports[] = {ENV_IMPORTANCE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_BASE, KERNEL_MIPS, KERNEL_ROWS, KERNEL_COLUMNS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BASE] = TYN_KERNEL(env_importance_base),
-    [KERNEL_MIPS] = TYN_KERNEL(env_importance_mips),
-    [KERNEL_ROWS] = TYN_KERNEL(env_importance_rows),
-    [KERNEL_COLUMNS] = TYN_KERNEL(env_importance_columns),
-};
+#include "passes/env_importance_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -1,10 +1,6 @@
 // guides.c -- tables and dispatch of the albedo and normal of first surfaces.
 #include "guides.h"
-#include "guides.comp.h"
-
-static const tyn_port ports[] = {GUIDES_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(guides)};
+#include "passes/guides_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -1,10 +1,6 @@
 // halve_depth.c -- see halve_depth.h.
 #include "halve_depth.h"
-#include "halve_depth.comp.h"
-
-static const tyn_port ports[] = {HALVE_DEPTH_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(halve_depth)};
+#include "passes/halve_depth_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -1,24 +1,9 @@
 // importance.c -- see importance.h.
 #include "importance.h"
-#include "importance_cells.comp.h"
-#include "importance_field.comp.h"
-#include "importance_map.comp.h"
-#include "importance_send.comp.h"
-#include "importance_setup.comp.h"
-#include "importance_step.comp.h"
+#include "passes/importance_tables.h"
 #include "shaders/common/scene_args.h"
 
 #define PORT(name) IMPORTANCE_PORT_##name
-
-static const tyn_port ports[] = {IMPORTANCE_PORTS(TYN_PORT_ROW)};
-
-enum { SETUP, CELLS, STEP, FIELD, SEND, MAP, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = TYN_KERNEL(importance_setup), [CELLS] = TYN_KERNEL(importance_cells),
-    [STEP] = TYN_KERNEL(importance_step),   [FIELD] = TYN_KERNEL(importance_field),
-    [SEND] = TYN_KERNEL(importance_send),   [MAP] = TYN_KERNEL(importance_map),
-};
 
 #define FIELD_OF(name) offsetof(tyn_importance_params, name)
 static const tyn_param params[] = {
@@ -58,16 +43,16 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent grid = {n, n, n};
     static const uint8_t swapped[] = {PORT(CELLS), PORT(LIGHT), PORT(LIGHT_OTHER), PORT(TRACKS)};
 
-    TYN_DISPATCH(r, .kernel = SETUP, .cells = {1, 1, 1}, .args = &args);
-    TYN_DISPATCH(r, .kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode);
+    TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {1, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = grid, .args = &args, .spec = &p->mode);
     for (int32_t i = 0; i < p->iterations; i++) {
-        TYN_DISPATCH(r, .kernel = STEP, .cells = grid, .args = &args,
+        TYN_DISPATCH(r, .kernel = KERNEL_STEP, .cells = grid, .args = &args,
                      .ports = i % 2 == 0 ? swapped : NULL);
     }
-    TYN_DISPATCH(r, .kernel = FIELD, .cells = grid, .args = &args);
-    TYN_DISPATCH(r, .kernel = SEND, .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
+    TYN_DISPATCH(r, .kernel = KERNEL_FIELD, .cells = grid, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_SEND, .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
                  .args = &args);
-    TYN_DISPATCH(r, .kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args);
     double hops = (double)n * n * n * p->iterations;
     double steps = (double)TYN_IMPORTANCE_TEXELS * TYN_IMPORTANCE_RAYS * TYN_IMPORTANCE_RAYS *
                    TYN_IMPORTANCE_STEPS;

@@ -2,63 +2,14 @@
 #include "lattice.h"
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/counters.h"
-#include "lattice_start.comp.h"
-#include "lattice_stencil.comp.h"
-#include "lattice_stencil_coarse.comp.h"
-#include "lattice_stencil_walls.comp.h"
-#include "lattice_sweep.comp.h"
-#include "lattice_collect.comp.h"
-#include "lattice_relax.comp.h"
-#include "lattice_restrict.comp.h"
-#include "lattice_interpolate.comp.h"
-#include "lattice_coarse.comp.h"
-#include "lattice_depth.comp.h"
-#include "lattice_residual.comp.h"
-#include "lattice_weights.comp.h"
-#include "lattice_mix.comp.h"
+#include "passes/lattice_tables.h"
 #include <math.h>
 #include <string.h>
 
 // The state is in buffers: a software device stores to images several times more slowly. They are read as texels, which
 // it does as fast as with images.
-static const tyn_port ports[] = {LATTICE_PORTS(TYN_PORT_ROW)};
 
 // ---- kernels ------------------------------------------------------------------------------------
-
-enum {
-    KERNEL_START,
-    KERNEL_STENCIL,
-    KERNEL_STENCIL_COARSE,
-    KERNEL_STENCIL_WALLS,
-    KERNEL_SWEEP,
-    KERNEL_COLLECT,
-    KERNEL_RELAX,
-    KERNEL_RESTRICT,
-    KERNEL_INTERPOLATE,
-    KERNEL_COARSE,
-    KERNEL_DEPTH,
-    KERNEL_RESIDUAL,
-    KERNEL_WEIGHTS,
-    KERNEL_MIX,
-    NUM_KERNELS
-};
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_START] = TYN_KERNEL(lattice_start),
-    [KERNEL_STENCIL] = TYN_KERNEL(lattice_stencil),
-    [KERNEL_STENCIL_COARSE] = TYN_KERNEL(lattice_stencil_coarse),
-    [KERNEL_STENCIL_WALLS] = TYN_KERNEL(lattice_stencil_walls),
-    [KERNEL_SWEEP] = TYN_KERNEL(lattice_sweep),
-    [KERNEL_COLLECT] = TYN_KERNEL(lattice_collect),
-    [KERNEL_RELAX] = TYN_KERNEL(lattice_relax),
-    [KERNEL_RESTRICT] = TYN_KERNEL(lattice_restrict),
-    [KERNEL_INTERPOLATE] = TYN_KERNEL(lattice_interpolate),
-    [KERNEL_COARSE] = TYN_KERNEL(lattice_coarse),
-    [KERNEL_DEPTH] = TYN_KERNEL(lattice_depth),
-    [KERNEL_RESIDUAL] = TYN_KERNEL(lattice_residual),
-    [KERNEL_WEIGHTS] = TYN_KERNEL(lattice_weights),
-    [KERNEL_MIX] = TYN_KERNEL(lattice_mix),
-};
 
 // ---- levels of the diffusion grid ---------------------------------------------------------------
 

@@ -1,14 +1,8 @@
 // lattice_cells.c -- the medium on the lattice.
 #include "lattice_cells.h"
 #include "shaders/lattice/lattice_args.h"
-#include "lattice_cells.comp.h"
+#include "passes/lattice_cells_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {LATTICE_CELLS_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_cells),
-};
 
 enum { MAX_SAMPLES = 8 }; // along each axis of a cell
 

@@ -1,12 +1,6 @@
 // lattice_keep.c -- see lattice_keep.h.
 #include "lattice_keep.h"
-#include "lattice_keep.comp.h"
-
-static const tyn_port ports[] = {LATTICE_KEEP_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_keep),
-};
+#include "passes/lattice_keep_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -18,7 +12,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const struct lattice_recall_args args = lattice_memory_args(params);
-    TYN_DISPATCH(r, .kernel = 0, .cells = lattice_memory_texels(&args), .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_LATTICE_KEEP, .cells = lattice_memory_texels(&args),
+                 .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_keep = {

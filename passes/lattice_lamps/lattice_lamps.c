@@ -1,24 +1,8 @@
 // lattice_lamps.c -- unscattered light of lamps and VPLs on the lattice.
 #include "lattice_lamps.h"
 #include "shaders/lattice/lattice_args.h"
-#include "lattice_lamps_cells.comp.h"
-#include "lattice_lamps_near.comp.h"
-#include "lattice_lamps_sum.comp.h"
-#include "lattice_lamps_vpls.comp.h"
-#include "lattice_lamps.comp.h"
+#include "passes/lattice_lamps_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {LATTICE_LAMPS_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_CELLS, KERNEL_VPLS, KERNEL_NEAR, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = TYN_KERNEL(lattice_lamps_cells),
-    [KERNEL_VPLS] = TYN_KERNEL(lattice_lamps_vpls),
-    [KERNEL_NEAR] = TYN_KERNEL(lattice_lamps_near),
-    [KERNEL_SUM] = TYN_KERNEL(lattice_lamps_sum),
-    [KERNEL_SOURCE] = TYN_KERNEL(lattice_lamps),
-};
 
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)
 {
@@ -98,8 +82,9 @@ static void record(tyn_recorder *r, const void *params)
         LATTICE_LAMPS_PORT_SOURCE,
         p->vpls ? LATTICE_LAMPS_PORT_VPL_LIGHT : LATTICE_LAMPS_PORT_SOURCE,
     };
-    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                 .args = &args, .ports = source_ports, .spec = &p->vpls);
+    TYN_DISPATCH(r, .kernel = KERNEL_LATTICE_LAMPS,
+                 .cells = {dims.x, dims.y, dims.z * p->shape.channels}, .args = &args,
+                 .ports = source_ports, .spec = &p->vpls);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_lamps);
 }
 

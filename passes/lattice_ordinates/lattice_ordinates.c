@@ -1,19 +1,9 @@
 // lattice_ordinates.c -- the principal ordinates' unscattered light on the lattice.
 #include "lattice_ordinates.h"
 #include "shaders/lattice/lattice_args.h"
-#include "lattice_ordinates.comp.h"
-#include "lattice_ordinates_lines.comp.h"
+#include "passes/lattice_ordinates_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {LATTICE_ORDINATES_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_ORDINATES, KERNEL_LINES, NUM_KERNELS };
 enum { LINES = 14 }; // through a cell: lattice_sweep.glsl
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ORDINATES] = TYN_KERNEL(lattice_ordinates),
-    [KERNEL_LINES] = TYN_KERNEL(lattice_ordinates_lines),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -68,7 +58,7 @@ static void record(tyn_recorder *r, const void *params)
     if (seen && p->mean) {
         record_lines(r, p);
     }
-    TYN_DISPATCH(r, .kernel = KERNEL_ORDINATES, .cells = {(dims.x + 1) / 2, dims.y, dims.z},
+    TYN_DISPATCH(r, .kernel = KERNEL_LATTICE_ORDINATES, .cells = {(dims.x + 1) / 2, dims.y, dims.z},
                  .args = &args, .spec = spec);
 
     // As if all ordinates were in use. A transmittance: 30 operations; sums 30.

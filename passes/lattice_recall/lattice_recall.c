@@ -1,22 +1,12 @@
 // lattice_recall.c -- see lattice_recall.h.
 #include "lattice_recall.h"
-#include "lattice_recall.comp.h"
-#include "lattice_recall_power.comp.h"
+#include "passes/lattice_recall_tables.h"
 
 uint64_t tyn_lattice_memory_size(int32_t cells, uint32_t channels)
 {
     const uint64_t n = (uint64_t)cells;
     return sizeof(struct lattice_memory_block) + 4 * sizeof(float) * channels * n * n * n;
 }
-
-static const tyn_port ports[] = {LATTICE_RECALL_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_POWER, KERNEL_RECALL, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power),
-    [KERNEL_RECALL] = TYN_KERNEL(lattice_recall),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -34,7 +24,8 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, LATTICE_RECALL_PORT_POWER, 0); // of channels that are not solved
     TYN_DISPATCH(r, .kernel = KERNEL_POWER, .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
                  .args = &args);
-    TYN_DISPATCH(r, .kernel = KERNEL_RECALL, .cells = lattice_memory_texels(&args), .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_LATTICE_RECALL, .cells = lattice_memory_texels(&args),
+                 .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_recall = {

@@ -1,20 +1,8 @@
 // lattice_source.c -- the suns' unscattered light on the lattice.
 #include "lattice_source.h"
 #include "shaders/lattice/lattice_args.h"
-#include "lattice_source_beam.comp.h"
-#include "lattice_source_sum.comp.h"
-#include "lattice_source.comp.h"
+#include "passes/lattice_source_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {LATTICE_SOURCE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam),
-    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum),
-    [KERNEL_SOURCE] = TYN_KERNEL(lattice_source),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -60,8 +48,8 @@ static void record(tyn_recorder *r, const void *params)
     TYN_DISPATCH(r, .kernel = KERNEL_SUM,
                  .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1}, .args = &args,
                  .spec = &p->mode);
-    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                 .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_LATTICE_SOURCE,
+                 .cells = {dims.x, dims.y, dims.z * p->shape.channels}, .args = &args);
     tyn_rec_work(r, "cells", cells * p->num_suns);
     tyn_rec_work(r, "fetches", 2 * cells * p->num_suns * pow(args.samples, 3));
 }

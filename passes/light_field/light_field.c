@@ -1,11 +1,6 @@
 // light_field.c -- see light_field.h.
 #include "light_field.h"
-#include "light_field_float.comp.h"
-#include "light_field_half.comp.h"
-
-static const tyn_port ports[] = {LIGHT_FIELD_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(light_field_float), TYN_KERNEL(light_field_half)};
+#include "passes/light_field_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -19,7 +14,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_light_field_params *p = params;
-    TYN_DISPATCH(r, .kernel = p->half, .cells = tyn_rec_extent(r, LIGHT_FIELD_PORT_RED));
+    TYN_DISPATCH(r, .kernel = p->half ? KERNEL_HALF : KERNEL_FLOAT,
+                 .cells = tyn_rec_extent(r, LIGHT_FIELD_PORT_RED));
 }
 
 const tyn_pass_desc tyn_pass_light_field = {

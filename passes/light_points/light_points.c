@@ -1,11 +1,7 @@
 // light_points.c -- see light_points.h.
 #include "light_points.h"
 #include "light_points_args.h"
-#include "light_points.comp.h"
-
-static const tyn_port ports[] = {LIGHT_POINTS_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(light_points)};
+#include "passes/light_points_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

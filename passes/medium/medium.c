@@ -1,39 +1,7 @@
 // medium.c -- resamples the shapes where they are not one grid already; bricks and distances.
 #include "medium.h"
 #include "medium_args.h"
-#include "medium_bricks_colors.comp.h"
-#include "medium_bricks_plain.comp.h"
-#include "medium_coefficients.comp.h"
-#include "medium_colors.comp.h"
-#include "medium_density.comp.h"
-#include "medium_distance.comp.h"
-#include "medium_emission_colors.comp.h"
-#include "medium_emission_plain.comp.h"
-
-static const tyn_port ports[] = {MEDIUM_PORTS(TYN_PORT_ROW)};
-
-enum {
-    KERNEL_DENSITY,
-    KERNEL_COEFFICIENTS,
-    KERNEL_EMISSION,
-    KERNEL_BRICKS,
-    KERNEL_DISTANCE,
-    KERNEL_COLORS, // the first of those that read grids of colours
-    KERNEL_EMISSION_COLORS,
-    KERNEL_BRICKS_COLORS,
-    NUM_KERNELS
-};
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(medium_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(medium_coefficients),
-    [KERNEL_EMISSION] = TYN_KERNEL(medium_emission_plain),
-    [KERNEL_BRICKS] = TYN_KERNEL(medium_bricks_plain),
-    [KERNEL_DISTANCE] = TYN_KERNEL(medium_distance),
-    [KERNEL_COLORS] = TYN_KERNEL(medium_colors),
-    [KERNEL_EMISSION_COLORS] = TYN_KERNEL(medium_emission_colors),
-    [KERNEL_BRICKS_COLORS] = TYN_KERNEL(medium_bricks_colors),
-};
+#include "passes/medium_tables.h"
 
 static const char *const storages[] = {"auto", "half", "float"};
 
@@ -86,14 +54,14 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = colors ? KERNEL_COLORS : KERNEL_COEFFICIENTS, .cells = size,
                      .args = &resample);
         if (p->emissive) {
-            TYN_DISPATCH(r, .kernel = colors ? KERNEL_EMISSION_COLORS : KERNEL_EMISSION,
+            TYN_DISPATCH(r, .kernel = colors ? KERNEL_EMISSION_COLORS : KERNEL_EMISSION_PLAIN,
                          .cells = size, .args = &resample);
         }
     } else if (!p->direct) {
         TYN_DISPATCH(r, .kernel = KERNEL_DENSITY, .cells = size, .args = &resample);
     }
 
-    TYN_DISPATCH(r, .kernel = colors ? KERNEL_BRICKS_COLORS : KERNEL_BRICKS, .cells = bricks,
+    TYN_DISPATCH(r, .kernel = colors ? KERNEL_BRICKS_COLORS : KERNEL_BRICKS_PLAIN, .cells = bricks,
                  .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f});
 
     // x: bricks -> distance, y: distance -> scratch, z: scratch -> distance.

@@ -2,21 +2,7 @@
 #include "merge.h"
 #include "merge_args.h"
 #include "shaders/common/counters.h"
-#include "merge_cells.comp.h"
-#include "merge_ordinates.comp.h"
-#include "merge_radials.comp.h"
-#include "merge_one.comp.h"
-#include "merge_three.comp.h"
-
-static const tyn_port ports[] = {MERGE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = TYN_KERNEL(merge_cells),     [KERNEL_ORDINATES] = TYN_KERNEL(merge_ordinates),
-    [KERNEL_RADIALS] = TYN_KERNEL(merge_radials), [KERNEL_ONE] = TYN_KERNEL(merge_one),
-    [KERNEL_THREE] = TYN_KERNEL(merge_three),
-};
+#include "passes/merge_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -2,25 +2,9 @@
 #include "ordinates.h"
 #include "ordinates_args.h"
 #include "shaders/light/sky_args.h"
-#include "ordinates_columns.comp.h"
-#include "ordinates_fold.comp.h"
-#include "ordinates_gather.comp.h"
-#include "ordinates_partition.comp.h"
-#include "ordinates_rows.comp.h"
+#include "passes/ordinates_tables.h"
 #include <stddef.h>
 #include <string.h>
-
-static const tyn_port ports[] = {ORDINATES_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows),
-    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns),
-    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition),
-    [KERNEL_GATHER] = TYN_KERNEL(ordinates_gather),
-    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold),
-};
 
 static const tyn_param params_table[] = {
     {"count", TYN_PARAM_INT, offsetof(tyn_ordinates_params, count), 64, 1, TYN_ORDINATES_MAX, "",
@@ -73,8 +57,9 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
         TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1});
     }
-    for (uint32_t kernel = KERNEL_PARTITION; kernel <= KERNEL_FOLD; kernel++) {
-        TYN_DISPATCH(r, .kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args);
+    static const uint32_t steps[] = {KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD};
+    for (uint32_t i = 0; i < TYN_COUNT(steps); i++) {
+        TYN_DISPATCH(r, .kernel = steps[i], .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args);
     }
     tyn_rec_work(r, "regions", args.regions);
 }

@@ -1,15 +1,7 @@
 // path.c -- tables and dispatches of the path tracer: images.
 #include "path.h"
 #include "shaders/common/counters.h"
-#include "path_resolve.comp.h"
-#include "path_trace.comp.h"
-
-static const tyn_port ports[] = {PATH_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_trace),
-    TYN_KERNEL(path_resolve),
-};
+#include "passes/path_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -46,7 +38,8 @@ static void record(tyn_recorder *r, const void *params)
         args.first = first;
         args.num = num;
         args.slots = slots;
-        TYN_DISPATCH(r, .kernel = 0, .cells = {num * slots, 1, 1}, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_TRACE, .cells = {num * slots, 1, 1}, .args = &args,
+                     .spec = spec);
         struct path_resolve_args resolve = {
             .first = first,
             .num = num,
@@ -57,7 +50,7 @@ static void record(tyn_recorder *r, const void *params)
             .opaque = p->opaque,
             .resumed = p->resumed,
         };
-        TYN_DISPATCH(r, .kernel = 1, .cells = {num, 1, 1}, .args = &resolve);
+        TYN_DISPATCH(r, .kernel = KERNEL_RESOLVE, .cells = {num, 1, 1}, .args = &resolve);
     }
     tyn_rec_work(r, "paths", (double)pixels * p->num_samples);
 }

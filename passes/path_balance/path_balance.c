@@ -3,15 +3,7 @@
 #include "shaders/common/counters.h"
 #include "path_balance.h"
 #include "shaders/path/path_args.h"
-#include "path_balance.comp.h"
-#include "path_balance_sum.comp.h"
-
-static const tyn_port ports[] = {PATH_BALANCE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_balance),
-    TYN_KERNEL(path_balance_sum),
-};
+#include "passes/path_balance_tables.h"
 
 uint64_t tyn_path_balance_state_size(void)
 {
@@ -52,14 +44,16 @@ static void record(tyn_recorder *r, const void *params)
         args.slots = threads;
         args.num_samples = groups * kinds;
         args.first_sample = (before + chunk) * args.num_samples;
-        TYN_DISPATCH(r, .kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_PATH_BALANCE, .cells = {threads, 1, 1}, .args = &args,
+                     .spec = spec);
         struct path_resolve_args sum = {
             .num = 1,
             .slots = threads,
             .samples_before = (before + chunk) * groups,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
-        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum);
+        TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1},
+                     .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->chunks * groups * kinds);
 }

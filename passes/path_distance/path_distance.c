@@ -1,10 +1,6 @@
 // path_distance.c -- tables and dispatch of the distances to surfaces.
 #include "path_distance.h"
-#include "path_distance.comp.h"
-
-static const tyn_port ports[] = {PATH_DISTANCE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernel = TYN_KERNEL(path_distance);
+#include "passes/path_distance_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -23,13 +19,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_path_distance = {
     .name = "path_distance",
     .summary = "distances to the surfaces that the camera sees",
-    .ports = ports,
-    .num_ports = PATH_DISTANCE_NUM_PORTS,
-    .kernels = &kernel,
-    .num_kernels = 1,
-    .params_size = sizeof(tyn_path_distance_params),
-    .declare = declare,
-    .record = record,
+    TYN_PASS_TABLES(tyn_path_distance_params),
     .debug_port = PATH_DISTANCE_PORT_DISTANCES,
     .debug_meaning = "distance to the first surface",
 };

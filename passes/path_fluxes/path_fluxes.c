@@ -2,15 +2,7 @@
 #include "shaders/common/counters.h"
 #include "path_fluxes.h"
 #include "shaders/path/path_args.h"
-#include "path_fluxes.comp.h"
-#include "path_fluxes_sum.comp.h"
-
-static const tyn_port ports[] = {PATH_FLUXES_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_fluxes),
-    TYN_KERNEL(path_fluxes_sum),
-};
+#include "passes/path_fluxes_tables.h"
 
 uint64_t tyn_path_fluxes_state_size(void)
 {
@@ -40,11 +32,12 @@ static void record(tyn_recorder *r, const void *params)
         args.num = 1;
         args.slots = p->threads;
         args.first_sample = p->first_sample + chunk * p->num_samples;
-        TYN_DISPATCH(r, .kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_PATH_FLUXES, .cells = {p->threads, 1, 1}, .args = &args,
+                     .spec = spec);
         struct path_fluxes_sum_args sum = {
             .threads = p->threads, .paths = args.num_samples, .paths_before = args.first_sample};
-        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
-                     .args = &sum);
+        TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                     .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1}, .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->threads * p->chunks * p->num_samples);
 }

@@ -1,17 +1,9 @@
 // path_probe.c -- tables and dispatches of the path tracer: the light field at points.
 #include "path_probe.h"
 #include "shaders/common/counters.h"
-#include "path_probe.comp.h"
-#include "path_probe_resolve.comp.h"
+#include "passes/path_probe_tables.h"
 
 enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
-
-static const tyn_port ports[] = {PATH_PROBE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_probe),
-    TYN_KERNEL(path_probe_resolve),
-};
 
 uint64_t tyn_path_probe_state_size(uint32_t num_points)
 {
@@ -44,10 +36,11 @@ static void record(tyn_recorder *r, const void *params)
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        TYN_DISPATCH(r, .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_PATH_PROBE, .cells = {num * s.slots, 1, 1}, .args = &args,
+                     .spec = spec);
         struct path_resolve_args resolve = {
             .first = first, .num = num, .slots = s.slots, .samples_before = p->first_sample};
-        TYN_DISPATCH(r, .kernel = 1, .cells = {num * TYN_PATH_PROBE_VALUES, 1, 1},
+        TYN_DISPATCH(r, .kernel = KERNEL_RESOLVE, .cells = {num * TYN_PATH_PROBE_VALUES, 1, 1},
                      .args = &resolve);
     }
     tyn_rec_work(r, "paths", (double)points * p->num_samples);

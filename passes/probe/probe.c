@@ -1,15 +1,9 @@
 // probe.c -- the light field at points.
 #include "probe.h"
 #include "probe_args.h"
-#include "probe.comp.h"
+#include "passes/probe_tables.h"
 #include "shaders/common/counters.h"
 #include <string.h>
-
-static const tyn_port ports[] = {PROBE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(probe),
-};
 
 static uint32_t num_points(tyn_extent bytes)
 {

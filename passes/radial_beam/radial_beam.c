@@ -1,9 +1,7 @@
 // radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
 #include "radial_beam.h"
 #include "radial_beam_args.h"
-#include "radial_beam_setup.comp.h"
-#include "radial_beam_density.comp.h"
-#include "radial_beam_coefficients.comp.h"
+#include "passes/radial_beam_tables.h"
 #include "shaders/common/counters.h"
 #include <math.h>
 #include <string.h>
@@ -11,16 +9,6 @@
 // With coefficients a node has 48 bytes instead of 4: fine grids are kept to 64 cells, 10 MB per lamp.
 enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64, FURTHER_CELLS = 32 };
 enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
-
-static const tyn_port ports[] = {RADIAL_BEAM_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_SETUP, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SETUP] = TYN_KERNEL(radial_beam_setup),
-    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients),
-};
 
 static const tyn_param params_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, cells), 112, 2, MAX_CELLS, "cells",

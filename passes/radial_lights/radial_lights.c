@@ -1,10 +1,6 @@
 // radial_lights.c -- see radial_lights.h.
 #include "radial_lights.h"
-#include "radial_lights.comp.h"
-
-static const tyn_port ports[] = {RADIAL_LIGHTS_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(radial_lights)};
+#include "passes/radial_lights_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

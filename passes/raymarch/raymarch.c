@@ -3,9 +3,7 @@
 #include "raymarch_args.h"
 #include "shaders/phase/scatter_lut_args.h"
 #include "shaders/common/counters.h"
-#include "raymarch_background.comp.h"
-#include "raymarch_grey.comp.h"
-#include "raymarch_colour.comp.h"
+#include "passes/raymarch_tables.h"
 #include <math.h>
 
 // Less than a brick's voxels, so that what is moved into an empty brick comes from the next.
@@ -14,8 +12,6 @@
 // Steps among surfaces are up to this much longer than the medium alone asks for.
 #define STEPS_AMONG_SURFACES 2.0f
 #define DEPTH_AMONG_SURFACES 0.2f // ... where it is thin
-
-static const tyn_port ports[] = {RAYMARCH_PORTS(TYN_PORT_ROW)};
 
 enum {
     NUM_SPEC =
@@ -34,14 +30,6 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE + RAYMARCH_NOISE + RAYMARCH_TABLED ==
                    UINT32_MAX >> 2,
                "features have bits of their own");
-
-enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_GREY] = TYN_KERNEL(raymarch_grey),
-    [KERNEL_COLOUR] = TYN_KERNEL(raymarch_colour),
-    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background),
-};
 
 static const tyn_param params_table[] = {
     {"step", TYN_PARAM_FLOAT, offsetof(tyn_raymarch_params, step), 1, 0.05, 4, "voxels",

@@ -2,19 +2,7 @@
 #include "rooms.h"
 #include "rooms_args.h"
 #include "shaders/walls/rooms.h"
-#include "rooms_cells.comp.h"
-#include "rooms_links.comp.h"
-#include "rooms_vpls.comp.h"
-
-static const tyn_port ports[] = {ROOMS_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_LINKS, KERNEL_CELLS, KERNEL_VPLS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_LINKS] = TYN_KERNEL(rooms_links),
-    [KERNEL_CELLS] = TYN_KERNEL(rooms_cells),
-    [KERNEL_VPLS] = TYN_KERNEL(rooms_vpls),
-};
+#include "passes/rooms_tables.h"
 
 static uint32_t num_cells(const tyn_rooms_params *p)
 {

@@ -1,7 +1,6 @@
 // scatter_lut.c -- moments of the forward lobe on the CPU, the table on the GPU.
 #include "scatter_lut.h"
-#include "scatter_lut_sum.comp.h"
-#include "scatter_lut_tms.comp.h"
+#include "passes/scatter_lut_tables.h"
 #include "scene/phase.h"
 #include "shaders/common/counters.h"
 #include <math.h>
@@ -10,15 +9,6 @@ enum { MAX_TERMS = 2464 };
 enum { CONES_BYTES = 4 * TYN_TMS_CONES * TYN_TMS_MAX_TERMS };
 
 static const float least_blur = 1e-4f; // 1 - mean cosine: smaller suns are points (0.8 degrees RMS)
-
-static const tyn_port ports[] = {SCATTER_LUT_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_SUM, KERNEL_TMS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum),
-    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms),
-};
 
 // ---- rows -----------------------------------------------------------------------------------------
 

@@ -1,18 +1,8 @@
 // shade.c -- see shade.h.
 #include "shade.h"
 #include "shade_args.h"
-#include "shade_alone.comp.h"
-#include "shade_edges.comp.h"
-#include "shade_faces.comp.h"
+#include "passes/shade_tables.h"
 #include "shade_faces.h"
-#include "shade_forward.comp.h"
-#include "shade_gather.comp.h"
-#include "shade_places.comp.h"
-#include "shade_rows.comp.h"
-#include "shade_sight.comp.h"
-#include "shade_smooth.comp.h"
-#include "shade_surface.comp.h"
-#include "shade_vpls.comp.h"
 #include "shaders/common/counters.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
 #include <stddef.h>
@@ -21,33 +11,7 @@
 #define PORT(name) SHADE_PORT_##name
 #define TEXELS TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT // shade_part.glsl
 
-static const tyn_port ports[] = {SHADE_PORTS(TYN_PORT_ROW)};
-
-enum {
-    FORWARD = 0,
-    FACES,
-    SIGHT,
-    VPLS,
-    SUM_ROWS,
-    GATHER,
-    PLACES,
-    SMOOTH,
-    SURFACE,
-    EDGES,
-    ALONE,
-    NUM_KERNELS
-};
-
 #define ARGS sizeof(struct shade_args)
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [FORWARD] = TYN_KERNEL(shade_forward), [FACES] = TYN_KERNEL(shade_faces),
-    [SIGHT] = TYN_KERNEL(shade_sight),     [VPLS] = TYN_KERNEL(shade_vpls),
-    [SUM_ROWS] = TYN_KERNEL(shade_rows),   [GATHER] = TYN_KERNEL(shade_gather),
-    [PLACES] = TYN_KERNEL(shade_places),   [SMOOTH] = TYN_KERNEL(shade_smooth),
-    [SURFACE] = TYN_KERNEL(shade_surface), [EDGES] = TYN_KERNEL(shade_edges),
-    [ALONE] = TYN_KERNEL(shade_alone),
-};
 
 static const tyn_param params[] = {
     {"pattern", TYN_PARAM_INT, offsetof(tyn_shade_params, pattern), 0, 0, 8, "pixels",
@@ -150,15 +114,15 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_fill(r, PORT(COUNTERS), 0);
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
-        TYN_DISPATCH(r, .kernel = FORWARD, .cells = cells, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_FORWARD, .cells = cells, .spec = spec);
     }
     if (features & SHADE_OUTSIDE) {
-        d.kernel = FACES;
+        d.kernel = KERNEL_FACES;
         d.cells = (tyn_extent){6 * SHADE_FACE_PATCHES, 1, 1};
         tyn_rec_dispatch(r, &d);
         const uint32_t channels = p->one_channel ? 1 : 3;
         if (p->hidden) {
-            d.kernel = SIGHT;
+            d.kernel = KERNEL_SIGHT;
             d.cells = tyn_rec_extent(r, PORT(SIGHT));
             d.cells.z /= SHADE_SIGHT_FIELDS;
             d.spec = &channels;
@@ -167,22 +131,22 @@ static void record(tyn_recorder *r, const void *data)
         }
     }
     if (shared) {
-        d.kernel = VPLS;
+        d.kernel = KERNEL_VPLS;
         d.cells =
             (tyn_extent){(blocks.x + side - 1) / side,
                          (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
         const uint32_t of_rows[3] = {side, step, sky_maps};
-        TYN_DISPATCH(r, .kernel = SUM_ROWS, .cells = blocks, .spec = of_rows);
+        TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = blocks, .spec = of_rows);
         tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
-        d.kernel = GATHER;
+        d.kernel = KERNEL_GATHER;
         d.cells = blocks;
         tyn_rec_dispatch(r, &d);
-        d.kernel = PLACES;
+        d.kernel = KERNEL_PLACES;
         tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
     }
     if (step > 1) {
-        d.kernel = SMOOTH;
+        d.kernel = KERNEL_SMOOTH;
         d.cells = blocks;
         tyn_rec_dispatch(r, &d);
     }
@@ -190,18 +154,18 @@ static void record(tyn_recorder *r, const void *data)
     // Surfaces look up light of VPLs, or all smooth light.
     const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(PART_ROWS) : PORT(PART)}};
     uint8_t bound[3][TYN_MAX_BINDINGS];
-    d.kernel = SURFACE;
+    d.kernel = KERNEL_SURFACE;
     d.cells = pixels;
-    d.ports = tyn_ports_exchanged(&kernels[SURFACE], looked_up, 1, bound[0]);
+    d.ports = tyn_ports_exchanged(&kernels[KERNEL_SURFACE], looked_up, 1, bound[0]);
     tyn_rec_dispatch(r, &d);
     if (samples > 1) {
-        d.kernel = EDGES;
-        d.ports = tyn_ports_exchanged(&kernels[EDGES], looked_up, 1, bound[1]);
+        d.kernel = KERNEL_EDGES;
+        d.ports = tyn_ports_exchanged(&kernels[KERNEL_EDGES], looked_up, 1, bound[1]);
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);
     }
     if (shared || step > 1) {
-        d.kernel = ALONE;
-        d.ports = tyn_ports_exchanged(&kernels[ALONE], looked_up, 1, bound[2]);
+        d.kernel = KERNEL_ALONE;
+        d.ports = tyn_ports_exchanged(&kernels[KERNEL_ALONE], looked_up, 1, bound[2]);
         tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
     }
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);

@@ -1,13 +1,7 @@
 // sky_seen.c -- the maps of every direction looked up from every cell of the lattice.
 #include "sky_seen.h"
 #include "sky_seen_args.h"
-#include "sky_seen.comp.h"
-
-static const tyn_port ports[] = {SKY_SEEN_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(sky_seen),
-};
+#include "passes/sky_seen_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

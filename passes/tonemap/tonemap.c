@@ -1,14 +1,8 @@
 // tonemap.c -- the display transform: exposure, filmic curve, sRGB encoding, ordered dither.
 #include "tonemap.h"
 #include "tonemap_args.h"
-#include "tonemap_display.comp.h"
+#include "passes/tonemap_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(tonemap_display),
-};
 
 static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};
 
@@ -35,7 +29,8 @@ static void record(tyn_recorder *r, const void *params)
         .dither = p->dither,
         .opaque = p->opaque,
     };
-    TYN_DISPATCH(r, .kernel = 0, .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY), .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_DISPLAY, .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY),
+                 .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_tonemap = {

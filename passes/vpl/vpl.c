@@ -1,31 +1,15 @@
 // vpl.c -- see vpl.h.
 #include "vpl.h"
 #include "vpl_args.h"
-#include "vpl_bounce.comp.h"
-#include "vpl_further.comp.h"
+#include "passes/vpl_tables.h"
 #include "vpl_bounce_args.h"
-#include "vpl_distances.comp.h"
-#include "vpl_lights.comp.h"
 
-#include "vpl_power.comp.h"
-#include "vpl_strata.comp.h"
-#include "vpl_weights.comp.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 #include <string.h>
 
 #define PORT(name) VPL_PORT_##name
-static const tyn_port ports[] = {VPL_PORTS(TYN_PORT_ROW)};
-
-enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = TYN_KERNEL(vpl_weights), [STRATA] = TYN_KERNEL(vpl_strata),
-    [LIGHTS] = TYN_KERNEL(vpl_lights),   [DISTANCES] = TYN_KERNEL(vpl_distances),
-    [POWER] = TYN_KERNEL(vpl_power),     [BOUNCE] = TYN_KERNEL(vpl_bounce),
-    [FURTHER] = TYN_KERNEL(vpl_further),
-};
 
 static const tyn_param params[] = {
     {"count", TYN_PARAM_INT, offsetof(tyn_vpl_params, count), 128, 0, TYN_RADIAL_VPLS_MAX, "",
@@ -137,11 +121,12 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
     const uint32_t exchanged = of_bins ? TYN_COUNT(bins) : 0;
     uint8_t weights[TYN_MAX_BINDINGS], lights[TYN_MAX_BINDINGS];
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
-    TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1}, .args = args,
-                 .ports = tyn_ports_exchanged(&kernels[WEIGHTS], bins, exchanged, weights));
-    TYN_DISPATCH(r, .kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
-    TYN_DISPATCH(r, .kernel = LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
-                 .ports = tyn_ports_exchanged(&kernels[LIGHTS], bins, exchanged, lights),
+    TYN_DISPATCH(r, .kernel = KERNEL_WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1},
+                 .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_WEIGHTS], bins, exchanged, weights));
+    TYN_DISPATCH(r, .kernel = KERNEL_STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
+    TYN_DISPATCH(r, .kernel = KERNEL_LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_LIGHTS], bins, exchanged, lights),
                  .spec = &mode);
     tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
@@ -150,7 +135,7 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
 static void count_reflections(tyn_recorder *r)
 {
     tyn_rec_fill(r, PORT(BINS), 0);
-    TYN_DISPATCH(r, .kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
+    TYN_DISPATCH(r, .kernel = KERNEL_POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -170,7 +155,7 @@ static void record(tyn_recorder *r, const void *data)
     memcpy(args.near_lo, p->near_lo, sizeof args.near_lo);
     memcpy(args.near_hi, p->near_hi, sizeof args.near_hi);
     struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
-    const tyn_dispatch see = {.kernel = DISTANCES,
+    const tyn_dispatch see = {.kernel = KERNEL_DISTANCES,
                               .cells = tyn_rec_extent(r, PORT(VPL_DISTANCES)),
                               .args = &maps,
                               .spec = &p->mode};
@@ -193,12 +178,12 @@ static void record(tyn_recorder *r, const void *data)
         for (uint32_t i = 0; i < 2; i++) {
             const struct vpl_bounce_args of = {i};
             added.append = 1 + i;
-            TYN_DISPATCH(r, .kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of);
+            TYN_DISPATCH(r, .kernel = KERNEL_BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of);
             make_lights(r, &plan, &added, true, p->mode);
             count_reflections(r);
             tyn_rec_dispatch(r, &see);
         }
-        TYN_DISPATCH(r, .kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
+        TYN_DISPATCH(r, .kernel = KERNEL_FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
     }
     // Those of further reflections stand in two places, one after the other.
     tyn_rec_work(r, "rays", ((double)p->count + later) * side * side);

@@ -2,26 +2,8 @@
 #include "wall_light.h"
 #include "wall_light_args.h"
 #include "shaders/beams/radial_args.h"
-#include "wall_light_cells.comp.h"
-#include "wall_light_expected.comp.h"
-#include "wall_light_reflect.comp.h"
-#include "wall_light_scale.comp.h"
-#include "wall_light_sum.comp.h"
-#include "wall_light_sky.comp.h"
-#include "wall_light_suns.comp.h"
-#include "wall_light_vpls.comp.h"
-
-static const tyn_port ports[] = {WALL_LIGHT_PORTS(TYN_PORT_ROW)};
-
-enum { SUNS = 0, SKY, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
+#include "passes/wall_light_tables.h"
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = TYN_KERNEL(wall_light_suns),         [SKY] = TYN_KERNEL(wall_light_sky),
-    [VPLS] = TYN_KERNEL(wall_light_vpls),         [WALL_CELLS] = TYN_KERNEL(wall_light_cells),
-    [EXPECTED] = TYN_KERNEL(wall_light_expected), [SUM] = TYN_KERNEL(wall_light_sum),
-    [SCALE] = TYN_KERNEL(wall_light_scale),       [REFLECT] = TYN_KERNEL(wall_light_reflect),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -71,19 +53,21 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
     tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
     tyn_rec_fill(r, WALL_LIGHT_PORT_FIRST, WALL_LIGHT_DARK);
     tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
-    TYN_DISPATCH(r, .kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls);
-    TYN_DISPATCH(r, .kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells);
-    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = args, .spec = of_vpls},
+    TYN_DISPATCH(r, .kernel = KERNEL_EXPECTED, .cells = vpls, .args = args, .spec = of_vpls);
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = all, .args = args, .spec = of_cells);
+    tyn_rec_dispatch_indirect(r,
+                              &(tyn_dispatch){.kernel = KERNEL_VPLS, .args = args, .spec = of_vpls},
                               WALL_LIGHT_PORT_LIST, 0);
     if (scaled) {
         const tyn_extent parts = {args->num_parts * WALL_LIGHT_SUM_GROUP, 1, 1};
         const tyn_extent one = {WALL_LIGHT_VPLS, 1, 1};
         tyn_rec_fill(r, WALL_LIGHT_PORT_PARTS, 0);
-        TYN_DISPATCH(r, .kernel = SUM, .cells = parts, .args = args, .spec = &rooms);
-        TYN_DISPATCH(r, .kernel = SCALE, .cells = one, .args = args);
+        TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = parts, .args = args, .spec = &rooms);
+        TYN_DISPATCH(r, .kernel = KERNEL_SCALE, .cells = one, .args = args);
     }
-    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = REFLECT, .args = args, .spec = of_cells},
-                              WALL_LIGHT_PORT_LIST, 0);
+    tyn_rec_dispatch_indirect(
+        r, &(tyn_dispatch){.kernel = KERNEL_REFLECT, .args = args, .spec = of_cells},
+        WALL_LIGHT_PORT_LIST, 0);
 }
 
 static void record(tyn_recorder *r, const void *params)
@@ -97,11 +81,11 @@ static void record(tyn_recorder *r, const void *params)
     };
     const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
     if (p->num_suns > 0) {
-        TYN_DISPATCH(r, .kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode);
+        TYN_DISPATCH(r, .kernel = KERNEL_SUNS, .cells = cells, .args = &args, .spec = &p->mode);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_SKY_SEEN)) {
         const uint32_t of_sky[] = {p->mode, p->sky_whole};
-        TYN_DISPATCH(r, .kernel = SKY, .cells = cells, .args = &args, .spec = of_sky);
+        TYN_DISPATCH(r, .kernel = KERNEL_SKY, .cells = cells, .args = &args, .spec = of_sky);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);

@@ -3,17 +3,7 @@
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/walls/walls_args.h"
-#include "walls_scatter.comp.h"
-#include "walls_cells.comp.h"
-
-static const tyn_port ports[] = {WALLS_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter),
-    [KERNEL_CELLS] = TYN_KERNEL(walls_cells),
-};
+#include "passes/walls_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

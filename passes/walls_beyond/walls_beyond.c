@@ -1,13 +1,9 @@
 // walls_beyond.c -- see walls_beyond.h.
 #include "walls_beyond.h"
-#include "walls_beyond.comp.h"
+#include "passes/walls_beyond_tables.h"
 #include "walls_beyond_args.h"
 #include "shaders/walls/walls_args.h"
 #include <stddef.h>
-
-static const tyn_port ports[] = {WALLS_BEYOND_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(walls_beyond)};
 
 static const tyn_param params_table[] = {
     {"reach", TYN_PARAM_FLOAT, offsetof(tyn_walls_beyond_params, reach), 0.15, 0, 1, "",

@@ -42,6 +42,7 @@ check()
                 return roots[i] name
             }
         }
+        if (name ~ /^passes\/[a-z_]+_tables\.h$/) { return dir name } # made by the build
         if (name ~ /\.(comp|vert|frag)\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
             return dir name # made from the shader beside it
         }

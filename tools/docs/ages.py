@@ -14,13 +14,16 @@ COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+["<]([^">]+)[">]', re.M)
 PASS = re.compile(r"\btyn_pass_desc tyn_pass_(\w+)")
 EMBEDDED = re.compile(r'#include "(\w+)\.(comp|vert|frag)\.h"')
+TABLES = re.compile(r'#include "passes/\w+_tables\.h"') # of all kernels in the folder, which the build makes
+BUILDS = re.compile(r"'[\w/]*?(\w+\.comp)': *((?:modes|\{[^}]*\}| *\+ *)+)") # x.comp as x_<build>.comp, in meson.build
+MODES = ("density", "coefficients")
 
 
 class Kernels:
     """The kernels of a source tree, by the passes that embed them."""
 
     def __init__(self, root):
-        self.root, self.texts, self.by_name, self.embedded = root, {}, {}, {}
+        self.root, self.texts, self.by_name, self.embedded, self.builds = root, {}, {}, {}, {}
         for top in SOURCES:
             for folder, _, names in os.walk(os.path.join(root, top)):
                 for name in names:
@@ -33,7 +36,17 @@ class Kernels:
         elif ending == ".c":
             text = self._read(path)
             for name in PASS.findall(text):
-                self.embedded.setdefault(name, set()).update(name + "." + kind for name, kind in EMBEDDED.findall(text))
+                kernels = self.embedded.setdefault(name, set())
+                kernels.update(name + "." + kind for name, kind in EMBEDDED.findall(text))
+                kernels.update(self._in_folder(os.path.dirname(path)) if TABLES.search(text) else ())
+        elif name == "meson":
+            for kernel, builds in BUILDS.findall(self._read(path)):
+                names = re.findall(r"'(\w+)': *\[", builds) + list(MODES if "modes" in builds else ())
+                self.builds[kernel] = [kernel.replace(".", f"_{build}.") for build in names]
+
+    def _in_folder(self, folder):
+        """Kernels of a folder; their builds are filled in by hash_of."""
+        return {name for name in os.listdir(os.path.join(self.root, folder)) if name.endswith(".comp")}
 
     def _read(self, path):
         with open(os.path.join(self.root, path), encoding="utf-8") as file:
@@ -73,7 +86,8 @@ class Kernels:
         if name not in self.embedded:
             return None
         sum_ = hashlib.sha256()
-        for kernel in sorted(self.embedded[name]):
+        kernels = [built for kernel in self.embedded[name] for built in self.builds.get(kernel, [kernel])]
+        for kernel in sorted(kernels):
             source, seen = self._source(kernel), set()
             if source:
                 self._closure(source, seen)

@@ -2,18 +2,8 @@
 #include "constellation.h"
 #include "shaders/common/counters.h"
 #include "passes/light_list/common/constellation_args.h"
-#include "constellation_march_coefficients.comp.h"
-#include "constellation_march_density.comp.h"
+#include "passes/constellation_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {CONSTELLATION_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(constellation_march_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(constellation_march_coefficients),
-};
 
 static const char *const lightings[] = {"alpha", "primary", "self-shadowed"};
 static const char *const norms[] = {"4pi", "16pi2"};
@@ -171,7 +161,8 @@ static void record(tyn_recorder *r, const void *params)
             absent[num_absent++][1] = CONSTELLATION_PORT_RADIANCE;
         }
     }
-    const uint32_t kernel = p->mode == TYN_MEDIUM_DENSITY ? KERNEL_DENSITY : KERNEL_COEFFICIENTS;
+    const uint32_t kernel =
+        p->mode == TYN_MEDIUM_DENSITY ? KERNEL_MARCH_DENSITY : KERNEL_MARCH_COEFFICIENTS;
     tyn_ports_exchanged(&kernels[kernel], (const uint8_t(*)[2])absent, num_absent, ports_of);
     const uint32_t spec[] = {p->mode, features_of(r, p), (uint32_t)p->lighting};
     const uint32_t count = dispatches_of(p);

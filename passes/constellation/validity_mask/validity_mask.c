@@ -1,17 +1,7 @@
 // validity_mask.c -- which pixels show any medium, and where on their rays it begins, seen from behind.
 #include "validity_mask.h"
 #include "shaders/common/scene_args.h"
-#include "validity_mask_coefficients.comp.h"
-#include "validity_mask_density.comp.h"
-
-static const tyn_port ports[] = {VALIDITY_MASK_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(validity_mask_density),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(validity_mask_coefficients),
-};
+#include "passes/validity_mask_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

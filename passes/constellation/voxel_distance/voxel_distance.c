@@ -1,31 +1,8 @@
 // voxel_distance.c -- for each voxel the Euclidean distance to the nearest one that is not empty, beside the density.
 #include "voxel_distance.h"
 #include "shaders/common/scene_args.h"
-#include "voxel_distance_columns.comp.h"
-#include "voxel_distance_layers_coefficients.comp.h"
-#include "voxel_distance_layers_density.comp.h"
-#include "voxel_distance_rows_coefficients.comp.h"
-#include "voxel_distance_rows_density.comp.h"
+#include "passes/voxel_distance_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {VOXEL_DISTANCE_PORTS(TYN_PORT_ROW)};
-
-enum {
-    KERNEL_ROWS,
-    KERNEL_ROWS_COEFFICIENTS,
-    KERNEL_COLUMNS,
-    KERNEL_LAYERS,
-    KERNEL_LAYERS_COEFFICIENTS,
-    NUM_KERNELS
-};
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(voxel_distance_rows_density),
-    [KERNEL_ROWS_COEFFICIENTS] = TYN_KERNEL(voxel_distance_rows_coefficients),
-    [KERNEL_COLUMNS] = TYN_KERNEL(voxel_distance_columns),
-    [KERNEL_LAYERS] = TYN_KERNEL(voxel_distance_layers_density),
-    [KERNEL_LAYERS_COEFFICIENTS] = TYN_KERNEL(voxel_distance_layers_coefficients),
-};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -54,10 +31,10 @@ static void record(tyn_recorder *r, const void *params)
         .reach = p->reach,
     };
     const uint32_t spec[] = {p->emissive};
-    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_ROWS_COEFFICIENTS : KERNEL_ROWS,
+    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_ROWS_COEFFICIENTS : KERNEL_ROWS_DENSITY,
                  .cells = {size.y, size.z, 1}, .args = &args, .spec = spec);
     TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {size.x, size.z, 1}, .args = &args);
-    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_LAYERS_COEFFICIENTS : KERNEL_LAYERS,
+    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_LAYERS_COEFFICIENTS : KERNEL_LAYERS_DENSITY,
                  .cells = {size.x, size.y, 1}, .args = &args);
     tyn_rec_work(r, "cells", (double)size.x * size.y * size.z);
 }

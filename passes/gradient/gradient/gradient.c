@@ -2,31 +2,8 @@
 #include "gradient.h"
 #include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/counters.h"
-#include "gradient_field.comp.h"
-#include "gradient_reference.comp.h"
-#include "gradient_sample.comp.h"
-#include "gradient_split.comp.h"
-#include "gradient_voxels.comp.h"
+#include "passes/gradient_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {GRADIENT_PORTS(TYN_PORT_ROW)};
-
-enum {
-    KERNEL_SAMPLE,
-    KERNEL_REFERENCE,
-    KERNEL_SPLIT,
-    KERNEL_FIELD,
-    KERNEL_VOXELS,
-    NUM_KERNELS,
-};
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SAMPLE] = TYN_KERNEL(gradient_sample),
-    [KERNEL_REFERENCE] = TYN_KERNEL(gradient_reference),
-    [KERNEL_SPLIT] = TYN_KERNEL(gradient_split),
-    [KERNEL_FIELD] = TYN_KERNEL(gradient_field),
-    [KERNEL_VOXELS] = TYN_KERNEL(gradient_voxels),
-};
 
 // Steps of a ray, at most: software devices end all loops of a thread after 65535 turns, of which a list of
 // TYN_LIGHT_LIST_MAX lights may need one for each four steps.

@@ -1,16 +1,6 @@
 // light_list.c -- tables of the list of lights.
 #include "light_list.h"
-#include "light_list.comp.h"
-#include "light_list_shades.comp.h"
-
-static const tyn_port ports[] = {LIGHT_LIST_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_LIST, KERNEL_SHADES, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_LIST] = TYN_KERNEL(light_list),
-    [KERNEL_SHADES] = TYN_KERNEL(light_list_shades),
-};
+#include "passes/light_list_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -25,7 +15,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_light_list_params *p = params;
-    TYN_DISPATCH(r, .kernel = KERNEL_LIST, .cells = {64, 1, 1}, .args = &p->listed);
+    TYN_DISPATCH(r, .kernel = KERNEL_LIGHT_LIST, .cells = {64, 1, 1}, .args = &p->listed);
     if (tyn_rec_has(r, LIGHT_LIST_PORT_DIRECTIONS)) {
         TYN_DISPATCH(r, .kernel = KERNEL_SHADES, .cells = {TYN_ORDINATES_MAX, 1, 1},
                      .args = &p->listed);

@@ -1,10 +1,6 @@
 // median_cut.c -- an environment as a constellation of distant lights of equal power.
 #include "median_cut.h"
-#include "median_cut_regions.comp.h"
-
-static const tyn_port ports[] = {MEDIAN_CUT_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(median_cut_regions)};
+#include "passes/median_cut_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -22,7 +18,7 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_median_cut_params *p = params;
     const struct median_cut_args args = {.lights = p->lights, .map = p->map};
-    TYN_DISPATCH(r, .kernel = 0, .cells = {64, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_REGIONS, .cells = {64, 1, 1}, .args = &args);
 }
 
 static const tyn_counter counters[] = {

@@ -2,18 +2,8 @@
 #include "lpv.h"
 #include "lpv_args.h"
 #include "shaders/common/counters.h"
-#include "lpv_start.comp.h"
-#include "lpv_step.comp.h"
+#include "passes/lpv_tables.h"
 #include <math.h>
-
-static const tyn_port ports[] = {LPV_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_START, KERNEL_STEP, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_START] = TYN_KERNEL(lpv_start),
-    [KERNEL_STEP] = TYN_KERNEL(lpv_step),
-};
 
 _Static_assert((int)TYN_LPV_BLOCKERS_EXACT == LPV_BLOCKERS_EXACT &&
                    (int)TYN_LPV_BLOCKERS_FUZZY == LPV_BLOCKERS_FUZZY,

@@ -1,19 +1,9 @@
 // lpv_blockers.c -- maps along the axes as blockers of light propagation volumes.
 #include "lpv_blockers.h"
 #include "lpv_blockers_args.h"
-#include "lpv_blockers_deposit.comp.h"
-#include "lpv_blockers_links.comp.h"
+#include "passes/lpv_blockers_tables.h"
 #include <math.h>
 #include <string.h>
-
-static const tyn_port ports[] = {LPV_BLOCKERS_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_DEPOSIT, KERNEL_LINKS, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DEPOSIT] = TYN_KERNEL(lpv_blockers_deposit),
-    [KERNEL_LINKS] = TYN_KERNEL(lpv_blockers_links),
-};
 
 float tyn_lpv_blockers_view(const tyn_lpv_blockers_params *p, uint32_t i, uint32_t offset[2],
                             float rows[4][4])

@@ -3,17 +3,7 @@
 #include "lpv_reflect_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/light/shadow_args.h"
-#include "lpv_reflect_sum.comp.h"
-#include "lpv_reflect_deposit.comp.h"
-
-static const tyn_port ports[] = {LPV_REFLECT_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_SUM, KERNEL_DEPOSIT, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = TYN_KERNEL(lpv_reflect_sum),
-    [KERNEL_DEPOSIT] = TYN_KERNEL(lpv_reflect_deposit),
-};
+#include "passes/lpv_reflect_tables.h"
 
 static tyn_extent blocks_of(tyn_extent atlas)
 {

@@ -1,13 +1,9 @@
 // lpv_scatter.c -- rays of suns and lamps, and the light that scatters on them.
 #include "lpv_scatter.h"
 #include "shaders/common/counters.h"
-#include "lpv_scatter.comp.h"
+#include "passes/lpv_scatter_tables.h"
 #include <math.h>
 #include <string.h>
-
-static const tyn_port ports[] = {LPV_SCATTER_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(lpv_scatter)};
 
 // Rays along a side of each of a point light's six maps, or of a spot's one; less for more than four lamps.
 enum { LAMP_TEXELS = 64 };

@@ -1,11 +1,7 @@
 // impostor.c -- tables of the impostor.
 #include "impostor.h"
 #include "impostor_args.h"
-#include "impostor.comp.h"
-
-static const tyn_port ports[] = {IMPOSTOR_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(impostor)};
+#include "passes/impostor_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

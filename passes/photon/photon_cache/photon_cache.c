@@ -3,17 +3,7 @@
 #include "photon_cache_args.h"
 #include "shaders/common/counters.h"
 #include "../common/photon_args.h"
-#include "photon_cache.comp.h"
-#include "photon_cache_turn.comp.h"
-
-static const tyn_port ports[] = {PHOTON_CACHE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_SUM, KERNEL_TURN, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = TYN_KERNEL(photon_cache),
-    [KERNEL_TURN] = TYN_KERNEL(photon_cache_turn),
-};
+#include "passes/photon_cache_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -44,7 +34,7 @@ static void record(tyn_recorder *r, const void *params)
         .cell_channels = p->shape.channels,
     };
     tyn_rec_fill(r, PHOTON_CACHE_PORT_COUNTERS, 0);
-    TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = {n.x * n.y * n.z, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_PHOTON_CACHE, .cells = {n.x * n.y * n.z, 1, 1}, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1});
     tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
 }

@@ -3,21 +3,9 @@
 #include "photon_trace_args.h"
 #include "shaders/common/counters.h"
 #include "../common/photon_args.h"
-#include "photon_trace.comp.h"
-#include "photon_trace_clear.comp.h"
-#include "photon_trace_turn.comp.h"
+#include "passes/photon_trace_tables.h"
 #include <math.h>
 #include <string.h>
-
-static const tyn_port ports[] = {PHOTON_TRACE_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_TURN, KERNEL_CLEAR, KERNEL_TRACE, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_TURN] = TYN_KERNEL(photon_trace_turn),
-    [KERNEL_CLEAR] = TYN_KERNEL(photon_trace_clear),
-    [KERNEL_TRACE] = TYN_KERNEL(photon_trace),
-};
 
 _Static_assert((int)TYN_PHOTON_SIMILARITY_PRINTED == PHOTON_SIMILARITY_PRINTED &&
                    (int)TYN_PHOTON_SIMILARITY_OFF == PHOTON_SIMILARITY_OFF,
@@ -151,7 +139,7 @@ static void record(tyn_recorder *r, const void *params)
         args.first = i * p->batch;
         args.num = p->batch;
         tyn_rec_dispatch_indirect(
-            r, &(tyn_dispatch){.kernel = KERNEL_TRACE, .args = &args, .spec = spec},
+            r, &(tyn_dispatch){.kernel = KERNEL_PHOTON_TRACE, .args = &args, .spec = spec},
             PHOTON_TRACE_PORT_GROUPS, 12ull * i);
     }
     tyn_rec_work(r, "paths", (double)turn.photons * turn.each);

@@ -1,11 +1,7 @@
 // photon_upsample.c -- tables of the cache's upsampling.
 #include "photon_upsample.h"
 #include "photon_upsample_args.h"
-#include "photon_upsample.comp.h"
-
-static const tyn_port ports[] = {PHOTON_UPSAMPLE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(photon_upsample)};
+#include "passes/photon_upsample_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

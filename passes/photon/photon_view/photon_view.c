@@ -2,12 +2,8 @@
 #include "photon_view.h"
 #include "photon_view_args.h"
 #include "shaders/common/counters.h"
-#include "photon_view.comp.h"
+#include "passes/photon_view_tables.h"
 #include <string.h>
-
-static const tyn_port ports[] = {PHOTON_VIEW_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {TYN_KERNEL(photon_view)};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -1,17 +1,11 @@
 // merge_grids.c -- see merge_grids.h.
 #include "merge_grids.h"
 #include "merge_grids_args.h"
-#include "merge_grids_sum.comp.h"
+#include "passes/merge_grids_tables.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) MERGE_GRIDS_PORT_##name
-
-static const tyn_port ports[] = {MERGE_GRIDS_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(merge_grids_sum),
-};
 
 static const tyn_param params[] = {
     {"finer", TYN_PARAM_INT, offsetof(tyn_merge_grids_params, finer), 2, 1, 8, "",

@@ -1,32 +1,13 @@
 // propagate_radial.c -- see propagate_radial.h.
 #include "propagate_radial.h"
 #include "propagate_radial_args.h"
-#include "propagate_radial_cells.comp.h"
-#include "propagate_radial_collect.comp.h"
-#include "propagate_radial_lit_lamps.comp.h"
-#include "propagate_radial_lit_vpls.comp.h"
-#include "propagate_radial_setup.comp.h"
-#include "propagate_radial_start.comp.h"
-#include "propagate_radial_step.comp.h"
+#include "passes/propagate_radial_tables.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name
 
-static const tyn_port ports[] = {PROPAGATE_RADIAL_PORTS(TYN_PORT_ROW)};
-
-enum { SETUP, CELLS, LIT_LAMPS, LIT_VPLS, START, STEP, COLLECT, NUM_KERNELS };
-
 #define EDGE PROPAGATE_RADIAL_GROUP
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = TYN_KERNEL(propagate_radial_setup),
-    [CELLS] = TYN_KERNEL(propagate_radial_cells),
-    [LIT_LAMPS] = TYN_KERNEL(propagate_radial_lit_lamps),
-    [LIT_VPLS] = TYN_KERNEL(propagate_radial_lit_vpls),
-    [START] = TYN_KERNEL(propagate_radial_start),
-    [STEP] = TYN_KERNEL(propagate_radial_step),
-    [COLLECT] = TYN_KERNEL(propagate_radial_collect),
-};
 
 #define FIELD(name) offsetof(tyn_propagate_radial_params, name)
 static const tyn_param params[] = {
@@ -138,27 +119,28 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
     uint32_t layers =
         (args->layers + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
     tyn_extent all = {side, side, layers * stacks};
-    TYN_DISPATCH(r, .kernel = CELLS, .cells = {side, side, layers * args->count}, .args = args,
-                 .spec = &p->mode);
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = {side, side, layers * args->count},
+                 .args = args, .spec = &p->mode);
     tyn_extent columns = {side, side, args->count};
     if (p->shadowed && args->first < p->num_lamps) {
-        TYN_DISPATCH(r, .kernel = LIT_LAMPS, .cells = columns, .args = args);
+        TYN_DISPATCH(r, .kernel = KERNEL_LIT_LAMPS, .cells = columns, .args = args);
     }
     if (p->shadowed && args->first + args->count > p->num_lamps) {
-        TYN_DISPATCH(r, .kernel = LIT_VPLS, .cells = columns, .args = args);
+        TYN_DISPATCH(r, .kernel = KERNEL_LIT_VPLS, .cells = columns, .args = args);
     }
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    TYN_DISPATCH(r, .kernel = START, .cells = {side, side, stacks}, .args = args,
-                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+    TYN_DISPATCH(r, .kernel = KERNEL_START, .cells = {side, side, stacks}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_START], swap, other ? 2 : 0, table),
                  .spec = &p->shadowed);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
-                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table),
+        TYN_DISPATCH(r, .kernel = KERNEL_STEP, .cells = all, .args = args,
+                     .ports =
+                         tyn_ports_exchanged(&kernels[KERNEL_STEP], swap, other ? 2 : 0, table),
                      .spec = &p->shadowed);
     }
-    TYN_DISPATCH(r, .kernel = COLLECT, .cells = {side + 2, side + 2, layers * stacks},
+    TYN_DISPATCH(r, .kernel = KERNEL_COLLECT, .cells = {side + 2, side + 2, layers * stacks},
                  .args = args);
 }
 
@@ -185,7 +167,7 @@ static void record(tyn_recorder *r, const void *data)
         args.voxel = fminf(args.voxel, p->extent[i] / (float)p->size[i]);
     }
     tyn_rec_update(r, PORT(LAMPS), 0, p->lamps, sizeof p->lamps);
-    TYN_DISPATCH(r, .kernel = SETUP, .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
+    TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
                  .args = &args);
     // Tiles without a grid must be numbers: a linear fetch at an edge gives them a weight of 0.
     tyn_rec_clear(r, PORT(SEEN));

@@ -1,58 +1,15 @@
 // propagate_rect.c -- see propagate_rect.h.
 #include "propagate_rect.h"
 #include "propagate_rect_args.h"
-#include "propagate_rect_cells.comp.h"
-#include "propagate_rect_collect.comp.h"
-#include "propagate_rect_copy.comp.h"
-#include "propagate_rect_light.comp.h"
-#include "propagate_rect_lit_maps.comp.h"
-#include "propagate_rect_lit_traced.comp.h"
-#include "propagate_rect_next.comp.h"
-#include "propagate_rect_setup.comp.h"
-#include "propagate_rect_shrink_coefficients.comp.h"
-#include "propagate_rect_shrink_density.comp.h"
-#include "propagate_rect_start.comp.h"
-#include "propagate_rect_step.comp.h"
+#include "passes/propagate_rect_tables.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
-static const tyn_port ports[] = {PROPAGATE_RECT_PORTS(TYN_PORT_ROW)};
-
-enum {
-    SETUP,
-    SHRINK_DENSITY,
-    SHRINK_COEFFICIENTS,
-    CELLS,
-    LIT_MAPS,
-    LIT_TRACED,
-    START,
-    NEXT,
-    STEP,
-    COPY,
-    COLLECT,
-    LIGHT,
-    NUM_KERNELS
-};
-
 #define EDGE PROPAGATE_RECT_GROUP
 #define ARGS sizeof(struct propagate_rect_args)
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = TYN_KERNEL(propagate_rect_setup),
-    [SHRINK_DENSITY] = TYN_KERNEL(propagate_rect_shrink_density),
-    [SHRINK_COEFFICIENTS] = TYN_KERNEL(propagate_rect_shrink_coefficients),
-    [CELLS] = TYN_KERNEL(propagate_rect_cells),
-    [LIT_MAPS] = TYN_KERNEL(propagate_rect_lit_maps),
-    [LIT_TRACED] = TYN_KERNEL(propagate_rect_lit_traced),
-    [START] = TYN_KERNEL(propagate_rect_start),
-    [NEXT] = TYN_KERNEL(propagate_rect_next),
-    [STEP] = TYN_KERNEL(propagate_rect_step),
-    [COPY] = TYN_KERNEL(propagate_rect_copy),
-    [COLLECT] = TYN_KERNEL(propagate_rect_collect),
-    [LIGHT] = TYN_KERNEL(propagate_rect_light),
-};
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
 static const tyn_param params[] = {
@@ -208,8 +165,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
 {
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    TYN_DISPATCH(r, .kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS, .cells = small_of(p),
-                 .spec = &p->mode);
+    TYN_DISPATCH(r, .kernel = density ? KERNEL_SHRINK_DENSITY : KERNEL_SHRINK_COEFFICIENTS,
+                 .cells = small_of(p), .spec = &p->mode);
 }
 
 // All iterations of args->count grids from args->first.
@@ -232,34 +189,37 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     tyn_extent all = {args->cells, args->cells, layers * stacks};
     uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
-    TYN_DISPATCH(r, .kernel = CELLS, .cells = {args->cells, args->cells, layers * args->count},
-                 .args = args, .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS,
+                 .cells = {args->cells, args->cells, layers * args->count}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_CELLS], small, shrunk, table),
                  .spec = &p->mode);
     tyn_extent columns = {args->cells, args->cells, args->count};
     if (args->first < p->num_mapped) {
-        TYN_DISPATCH(r, .kernel = LIT_MAPS, .cells = columns, .args = args);
+        TYN_DISPATCH(r, .kernel = KERNEL_LIT_MAPS, .cells = columns, .args = args);
     }
     if (p->num_triangles && args->first + args->count > p->num_mapped) {
-        TYN_DISPATCH(r, .kernel = LIT_TRACED, .cells = columns, .args = args);
+        TYN_DISPATCH(r, .kernel = KERNEL_LIT_TRACED, .cells = columns, .args = args);
     }
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    TYN_DISPATCH(r, .kernel = START, .cells = {args->cells, args->cells, stacks}, .args = args,
-                 .ports =
-                     tyn_ports_exchanged(&kernels[START], swap, other ? TYN_COUNT(swap) : 0, table),
+    TYN_DISPATCH(r, .kernel = KERNEL_START, .cells = {args->cells, args->cells, stacks},
+                 .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_START], swap,
+                                              other ? TYN_COUNT(swap) : 0, table),
                  .spec = start);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         args->iteration = (uint32_t)m + 1;
         const tyn_dispatch d = {
-            .kernel = STEP,
+            .kernel = KERNEL_STEP,
             .cells = all,
             .args = args,
-            .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? TYN_COUNT(swap) : 0, table),
+            .ports = tyn_ports_exchanged(&kernels[KERNEL_STEP], swap, other ? TYN_COUNT(swap) : 0,
+                                         table),
             .spec = step,
         };
         if (p->threshold > 0) {
-            TYN_DISPATCH(r, .kernel = NEXT, .cells = {1, 1, 1}, .args = args);
+            TYN_DISPATCH(r, .kernel = KERNEL_NEXT, .cells = {1, 1, 1}, .args = args);
             tyn_rec_dispatch_indirect(r, &d, PORT(LAUNCHES),
                                       offsetof(struct propagate_launches, step));
         } else {
@@ -267,12 +227,12 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
         }
     }
     if (p->threshold > 0) {
-        tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = COPY, .args = args}, PORT(LAUNCHES),
-                                  offsetof(struct propagate_launches, copy));
+        tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = KERNEL_COPY, .args = args},
+                                  PORT(LAUNCHES), offsetof(struct propagate_launches, copy));
     }
-    TYN_DISPATCH(r, .kernel = COLLECT, .cells = all, .args = args);
+    TYN_DISPATCH(r, .kernel = KERNEL_COLLECT, .cells = all, .args = args);
     if (p->keep_light) {
-        TYN_DISPATCH(r, .kernel = LIGHT, .cells = all, .args = args, .spec = &stretched);
+        TYN_DISPATCH(r, .kernel = KERNEL_LIGHT, .cells = all, .args = args, .spec = &stretched);
     }
 }
 
@@ -299,7 +259,7 @@ static void record(tyn_recorder *r, const void *data)
     if (p->threshold > 0) {
         tyn_rec_fill(r, PORT(FLIGHT), 0);
     }
-    TYN_DISPATCH(r, .kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {
         record_shrink(r, p);
     }

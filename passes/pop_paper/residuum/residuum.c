@@ -1,9 +1,7 @@
 // residuum.c -- see residuum.h.
 #include "residuum.h"
 #include "residuum_args.h"
-#include "residuum_collect.comp.h"
-#include "residuum_start.comp.h"
-#include "residuum_step.comp.h"
+#include "passes/residuum_tables.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 
@@ -19,16 +17,6 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
     double hops = depth > 0 ? ceil(events / depth) : INFINITY;
     return hops < UINT32_MAX ? (uint32_t)hops : UINT32_MAX;
 }
-
-static const tyn_port ports[] = {RESIDUUM_PORTS(TYN_PORT_ROW)};
-
-enum { START, STEP, COLLECT, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [START] = TYN_KERNEL(residuum_start),
-    [STEP] = TYN_KERNEL(residuum_step),
-    [COLLECT] = TYN_KERNEL(residuum_collect),
-};
 
 #define FIELD(name) offsetof(tyn_residuum_params, name)
 static const tyn_param params[] = {
@@ -82,15 +70,16 @@ static void record(tyn_recorder *r, const void *data)
         .tiles = tyn_rec_extent(r, PORT(LIGHT)).x / p->grid_cells,
     };
     bool other = p->iterations % 2 != 0;
-    TYN_DISPATCH(r, .kernel = START, .cells = dims, .args = &args,
-                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+    TYN_DISPATCH(r, .kernel = KERNEL_START, .cells = dims, .args = &args,
+                 .ports = tyn_ports_exchanged(&kernels[KERNEL_START], swap, other ? 2 : 0, table),
                  .spec = &p->mode);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        TYN_DISPATCH(r, .kernel = STEP, .cells = dims, .args = &args,
-                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
+        TYN_DISPATCH(r, .kernel = KERNEL_STEP, .cells = dims, .args = &args,
+                     .ports =
+                         tyn_ports_exchanged(&kernels[KERNEL_STEP], swap, other ? 2 : 0, table));
     }
-    TYN_DISPATCH(r, .kernel = COLLECT, .cells = dims, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_COLLECT, .cells = dims, .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->iterations);
 }
 

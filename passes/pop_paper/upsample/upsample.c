@@ -1,17 +1,11 @@
 // upsample.c -- see upsample.h.
 #include "upsample.h"
 #include "upsample_args.h"
-#include "upsample_field.comp.h"
+#include "passes/upsample_tables.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) UPSAMPLE_PORT_##name
-
-static const tyn_port ports[] = {UPSAMPLE_PORTS(TYN_PORT_ROW)};
-
-static const tyn_kernel kernels[] = {
-    TYN_KERNEL(upsample_field),
-};
 
 static const tyn_param params[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_upsample_params, cells), 64, 8, 256, "cells",

@@ -3,44 +3,13 @@
 #include "shdom_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/light/ordinate_args.h"
-#include "shdom_basis.comp.h"
-#include "shdom_direct.comp.h"
-#include "shdom_emit.comp.h"
-#include "shdom_gather.comp.h"
-#include "shdom_lamps.comp.h"
-#include "shdom_lines.comp.h"
-#include "shdom_moments.comp.h"
-#include "shdom_next.comp.h"
-#include "shdom_project.comp.h"
+#include "passes/shdom_tables.h"
 #include <math.h>
 
 #define PORT(name) SHDOM_PORT_##name
 
 // What a storage buffer may have on any device; a batch of ordinates stays below a quarter of that.
 static const uint64_t max_bytes = 128u << 20, batch_bytes = 32u << 20;
-
-static const tyn_port ports[] = {SHDOM_PORTS(TYN_PORT_ROW)};
-
-enum {
-    KERNEL_BASIS,
-    KERNEL_DIRECT,
-    KERNEL_LAMPS,
-    KERNEL_PROJECT,
-    KERNEL_NEXT,
-    KERNEL_EMIT,
-    KERNEL_LINES,
-    KERNEL_GATHER,
-    KERNEL_MOMENTS,
-    NUM_KERNELS
-};
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BASIS] = TYN_KERNEL(shdom_basis),     [KERNEL_DIRECT] = TYN_KERNEL(shdom_direct),
-    [KERNEL_LAMPS] = TYN_KERNEL(shdom_lamps),     [KERNEL_PROJECT] = TYN_KERNEL(shdom_project),
-    [KERNEL_NEXT] = TYN_KERNEL(shdom_next),       [KERNEL_EMIT] = TYN_KERNEL(shdom_emit),
-    [KERNEL_LINES] = TYN_KERNEL(shdom_lines),     [KERNEL_GATHER] = TYN_KERNEL(shdom_gather),
-    [KERNEL_MOMENTS] = TYN_KERNEL(shdom_moments),
-};
 
 // ---- the quadrature ---------------------------------------------------------------------------
 

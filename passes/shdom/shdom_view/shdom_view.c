@@ -2,21 +2,9 @@
 #include "shdom_view.h"
 #include "shdom_view_args.h"
 #include "shaders/common/counters.h"
-#include "shdom_view_cells.comp.h"
-#include "shdom_view_peaks.comp.h"
-#include "shdom_view_store.comp.h"
+#include "passes/shdom_view_tables.h"
 
 #define PORT(name) SHDOM_VIEW_PORT_##name
-
-static const tyn_port ports[] = {SHDOM_VIEW_PORTS(TYN_PORT_ROW)};
-
-enum { KERNEL_CELLS, KERNEL_PEAKS, KERNEL_STORE, NUM_KERNELS };
-
-static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = TYN_KERNEL(shdom_view_cells),
-    [KERNEL_PEAKS] = TYN_KERNEL(shdom_view_peaks),
-    [KERNEL_STORE] = TYN_KERNEL(shdom_view_store),
-};
 
 static tyn_extent dims_of(tyn_extent cells, uint32_t channels)
 {
