@@ -3,8 +3,8 @@
 
     kernel.py GLSLANG OUTPUT INPUT arguments of glslang...
 
-INPUT is passes/<pass>/<kernel>.comp, .vert or .frag; `--vn` among the arguments names the array of words. Beside the
-words the header has, for TYN_KERNEL and TYN_DRAW (tyndall/pass.h):
+INPUT is passes/<pass>/<kernel>.comp, .vert or .frag; `--vn` among the arguments names the array of words. A shader without a
+#version is compiled behind PREAMBLE. Beside the words the header has, for TYN_KERNEL and TYN_DRAW (tyndall/pass.h):
 
     <kernel>_bindings[]   a tyn_binding of each descriptor, in the order of their binding numbers
     <kernel>_args_size, _num_spec, _x, _y, _z    bytes of push constants, specialisation constants, workgroup
@@ -24,6 +24,7 @@ import struct
 import subprocess
 import sys
 
+PREAMBLE = '#version 460\n#extension GL_GOOGLE_include_directive : require\n'
 SUFFIX = re.compile(r'_(uniform|buffer|tex|image|wrapped|texels|words)\d*$')
 NAME, DECORATE, MEMBER_DECORATE, EXECUTION_MODE_ID = 5, 71, 72, 331
 TYPE_INT, TYPE_FLOAT, TYPE_VECTOR, TYPE_MATRIX, TYPE_IMAGE, TYPE_SAMPLED_IMAGE = 21, 22, 23, 24, 25, 27
@@ -117,10 +118,22 @@ class Module:
         return ''.join(rows[at] for at in sorted(rows))
 
 
+def with_preamble(source, output, arguments):
+    """The arguments of glslang: for the shader, or for a file beside the output that includes it behind PREAMBLE."""
+    with open(source) as file:
+        if re.search(r'^#version', file.read(), re.M):
+            return arguments
+    folder, name = os.path.split(source)
+    whole = output + os.path.splitext(source)[1]
+    with open(whole, 'w') as file:
+        file.write(f'{PREAMBLE}#include "{name}"\n')
+    return [whole if argument == source else argument for argument in arguments] + [f'-I{folder or "."}']
+
+
 def main():
     glslang, output, source = sys.argv[1:4]
     name = sys.argv[sys.argv.index('--vn') + 1].removesuffix('_spirv')
-    if subprocess.run([glslang, *sys.argv[4:]]).returncode != 0:
+    if subprocess.run([glslang, *with_preamble(source, output, sys.argv[4:])]).returncode != 0:
         sys.exit(1)
     with open(output) as file:
         text = file.read()

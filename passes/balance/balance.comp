@@ -4,8 +4,6 @@
 // ordinate its irradiance times the area across it; the lines' leaks are net, so what they carry
 // straight through the lattice counts on both sides. Suns and ordinates lose what collides in the
 // cells: that of a sun was made to be what its beam loses.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/surfaces/surface_table_args.h"

@@ -4,8 +4,6 @@
 //
 // This knows nothing of shadow maps, of the cells' first collisions and of what VPLs were made from: that
 // the sums agree is a check of these.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "balance_args.h"
 #include "shaders/surfaces/surface_args.h"

@@ -1,6 +1,4 @@
 // beam.comp -- the medium integrated along each sun; x, y: column, z: sun. Built for both modes (medium_value.glsl).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"

@@ -1,7 +1,5 @@
 // columns.comp -- the medium integrated along the columns; x: column, z: ordinate of the batch. Built for both modes
 // (medium_value.glsl).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0

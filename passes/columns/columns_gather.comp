@@ -5,8 +5,6 @@
 // rays enter the box through different faces the depth has a kink: there the columns have, together, not
 // gone as far through the box as the rays to the cell. What they lack is the medium at the ray's entry
 // times that distance; without it the edges of a box of medium would show.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #include "shaders/common/counters.h"

@@ -3,8 +3,6 @@
 //
 // The means of sigma_s, sigma_a and (1 - f) sigma_s are those of the medium; g is what makes the last of
 // the first.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/columns_args.h"
 #include "shaders/phase/phase.glsl"
 

@@ -1,7 +1,5 @@
 // composite.comp -- the medium over a host image; built for each of its formats, COLOUR_FORMAT, and with JOINT for images
 // twice as large as the medium's picture.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform sampler2D radiance;

@@ -1,6 +1,4 @@
 // env_glow_analyse.comp -- spherical harmonics of the map: an order a group, a degree a thread.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
 #include "legendre.glsl"
 

@@ -1,6 +1,4 @@
 // env_glow_rows.comp -- Fourier sums of the map's rows: a row a group, four orders a thread.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
 #include "shaders/common/counters.h"
 #include "env_glow_args.h"

@@ -1,8 +1,6 @@
 // env_glow_smear.comp -- rows of the smeared map: an order and a level a group, eight rows a thread.
 //
 // Several rows a thread, as fetching a coefficient costs some devices more than using it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT, PAIRS = 4, THREADS = ROWS / 2 / PAIRS;

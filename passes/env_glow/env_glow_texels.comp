@@ -1,6 +1,4 @@
 // env_glow_texels.comp -- texels of the smeared map from its rows' Fourier sums: 16 texels a thread.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
 #include "shaders/common/counters.h"
 

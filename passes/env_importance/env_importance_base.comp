@@ -2,8 +2,6 @@
 //
 // Every texel of the map counts with the solid angle that it shares with the texel of the level, so the
 // level's integral is the map's, whatever the map's size.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "env_importance_args.h"
 #include "shaders/light/sky.glsl"
 

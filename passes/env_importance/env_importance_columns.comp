@@ -1,6 +1,4 @@
 // env_importance_columns.comp -- sums of the rows' sums down the columns; a thread per number.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 64) in;

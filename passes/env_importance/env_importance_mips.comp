@@ -2,8 +2,6 @@
 //
 // A workgroup owns 16 x 16 texels of the level it reads. Radiance is averaged by solid angle, the
 // fourth channel is added up.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

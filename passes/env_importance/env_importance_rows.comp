@@ -1,6 +1,4 @@
 // env_importance_rows.comp -- sums along the rows; a workgroup per row.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;

@@ -1,7 +1,5 @@
 // gbuffer_mixed.comp -- pixels whose samples see several triangles, or one beside nothing. They may make up one piece
 // of surface; else the pixel is an edge.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;

@@ -1,7 +1,5 @@
 // gbuffer_resolve.comp -- what pixels show whose samples all see one triangle, or none. The others are listed for
 // gbuffer_mixed.comp: on a device whose threads run together they would keep their neighbours waiting.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

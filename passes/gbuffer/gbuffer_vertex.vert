@@ -2,8 +2,6 @@
 //
 // Depth is reversed. Perspective: 0 at infinity, and what is nearer to the eye than a millionth of the
 // scene is cut off; orthographic: 1 in the plane of the camera, 0 behind the scene.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/camera.glsl"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/surfaces/surface_frame.glsl"

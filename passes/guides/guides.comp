@@ -1,6 +1,4 @@
 // guides.comp -- means over each pixel of albedo and normal of the surfaces that its samples see.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,7 +1,5 @@
 // importance_cells.comp -- the medium of each cell, and the importance before the first hop: a picture
 // of power 1, evenly over its area, enters the first layer.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/medium/medium.glsl"

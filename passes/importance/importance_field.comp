@@ -1,6 +1,4 @@
 // importance_field.comp -- what each cell scatters for the last time.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "importance_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

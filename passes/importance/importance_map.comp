@@ -1,6 +1,4 @@
 // importance_map.comp -- the map: filtered over the sphere, of mean 1, filtered in time. One workgroup.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_TEXELS) in;

@@ -1,7 +1,5 @@
 // importance_send.comp -- what leaves the medium along each direction of the map: parallel rays through
 // the box, marched from where the importance leaves.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/common/camera.glsl"
 #include "shaders/phase/hg.glsl"

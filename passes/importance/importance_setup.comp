@@ -1,6 +1,4 @@
 // importance_setup.comp -- places the grid.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "importance.glsl"
 
 layout(local_size_x = 1) in;

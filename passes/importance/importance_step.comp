@@ -1,6 +1,4 @@
 // importance_step.comp -- one iteration: every cell gathers from its six neighbours.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -2,8 +2,6 @@
 //
 // One workgroup per channel. The first level's right hand side comes from a buffer, as do all
 // stencils; the corrections of all levels and the other right hand sides are in shared memory.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"

@@ -1,7 +1,5 @@
 // lattice_collect.comp -- moments of the radiance of a sweep, and the source of its diffusion
 // correction.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"

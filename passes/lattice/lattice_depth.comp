@@ -1,8 +1,6 @@
 // lattice_depth.comp -- leaves out the launches of further cycles of the diffusion correction where the medium is thin.
 //
 // There light goes from wall to wall, which corrections do little about: a second cycle brings nothing.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 

@@ -1,6 +1,4 @@
 // lattice_interpolate.comp -- adds the correction of the next coarser level.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

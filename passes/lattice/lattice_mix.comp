@@ -1,6 +1,4 @@
 // lattice_mix.comp -- the next state, from the results of the last sweeps, and what it emits.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"

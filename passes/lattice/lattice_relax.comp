@@ -1,6 +1,4 @@
 // lattice_relax.comp -- Gauss-Seidel on the cells of one colour of a checkerboard.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

@@ -6,8 +6,6 @@
 // radiance whose first moments these are); of the last sweep also r.r and that of the result itself. A first sweep's r
 // is the whole solution: what the diffusion correction added stands for it. Each thread adds its cells in order, each workgroup its
 // threads pairwise.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = LATTICE_GROUP) in;

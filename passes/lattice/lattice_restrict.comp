@@ -2,8 +2,6 @@
 // of its first relaxation, from corrections of 0.
 //
 // Cells of the finer level whose indices have an odd sum were relaxed last: their residual is 0.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"

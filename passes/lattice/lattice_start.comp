@@ -3,8 +3,6 @@
 //
 // In a medium that only scatters, inside a uniform environment, the former is already the solution. Among
 // walls it is dark: what no light reaches stays so.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #define LATTICE_ENVIRONMENT 0

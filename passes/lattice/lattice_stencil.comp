@@ -1,6 +1,4 @@
 // lattice_stencil.comp -- stencil of the diffusion correction on the lattice itself.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_stencil.glsl"

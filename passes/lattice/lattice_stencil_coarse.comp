@@ -2,8 +2,6 @@
 //
 // Coarse conductances are those of cells twice as large whose D is the mean over the four fine
 // faces: half the sum. Absorption adds up.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

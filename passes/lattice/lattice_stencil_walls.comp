@@ -1,7 +1,5 @@
 // lattice_stencil_walls.comp -- marks the cells to which corrections of the next coarser level come unblended, as there
 // are walls about.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

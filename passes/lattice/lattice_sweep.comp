@@ -4,8 +4,6 @@
 // at a side goes on at the opposite side with the line that enters there, so every thread makes as
 // many steps as the box has slices, and every cell is met once per direction. At a link that a wall cuts
 // the light has arrived at the wall, and the line goes on with what the wall sends out on its other side.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define LATTICE_ENVIRONMENT 0
 #include "shaders/lattice/lattice_unhindered.glsl"

@@ -1,7 +1,5 @@
 // lattice_weights.comp -- Anderson mixing: the shares g_i of earlier sweeps that minimise |r + sum
 // g_i d_i|. After the last sweep: what further ones would still change, for the counters.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/counters.h"
 

@@ -2,8 +2,6 @@
 //
 // Averages are over the whole cell, the part outside the medium counting as 0: the optical depth of
 // every line of sight is kept in the mean, and so is the power that beams lose.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"

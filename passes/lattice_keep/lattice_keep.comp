@@ -1,6 +1,4 @@
 // lattice_keep.comp -- puts a solution away for the next frame.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;

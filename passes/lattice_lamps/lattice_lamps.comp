@@ -1,6 +1,4 @@
 // lattice_lamps.comp -- unscattered light in a cell: that of suns and sky, and of local lights after scaling.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"

@@ -2,8 +2,6 @@
 //
 // Fluence is the mean of I e^-tau' / r^2 over what scatters in the cell. Cells near a light are cut into up to
 // 8^3 pieces; of each the mean of 1 / r^2 is taken, which is finite at the light itself.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define RADIALS_AT 5

@@ -1,7 +1,5 @@
 // lattice_lamps_near.comp -- unscattered light of virtual point lights (VPLs) in the cells next to them, added to
 // that of all others.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define RADIALS_AT 5

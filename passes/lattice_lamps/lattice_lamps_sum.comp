@@ -4,8 +4,6 @@
 // of 1 - e^-tau' over its directions; of one outside the integral over the faces where its light leaves
 // the box, both as if nothing stood before the lights: what surfaces keep from the cells is left out after
 // scaling. Sums have a fixed order: every thread its own terms, then pairwise.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #define MEDIUM_BLOCK 0

@@ -3,8 +3,6 @@
 // What of a VPL changes little across a block is read once: its grid, and the mean of the medium on the way to
 // the block, which is then taken times each cell's own way. Cells that are next to a VPL are left to
 // lattice_lamps_near.comp.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0

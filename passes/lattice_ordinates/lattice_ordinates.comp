@@ -7,8 +7,6 @@
 // much faster across the light than along it; without that the cells would lose less than the light does
 // (0.7 % in a cube of depth 4 on 24 cells, with it 0.05 %). E may be negative: ordinates carry what
 // the sky has more or less than its mean.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0

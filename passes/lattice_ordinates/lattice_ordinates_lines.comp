@@ -1,7 +1,5 @@
 // lattice_ordinates_lines.comp -- the sky's mean along the lattice's lines, as if there were no surfaces: its mean radiance in
 // every cell. A thread follows one line of one direction and channel; lines are those of lattice_sweep.comp.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define LATTICE_ENVIRONMENT 0
 #include "shaders/lattice/lattice_unhindered.glsl"

@@ -1,6 +1,4 @@
 // lattice_recall.comp -- the last frame's solution at the places of this frame's cells.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice.glsl"
 #define LATTICE_ENVIRONMENT 1

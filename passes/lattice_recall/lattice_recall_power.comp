@@ -3,8 +3,6 @@
 // that is dimmed or switched off leaves little behind.
 //
 // One workgroup per channel; the sum has a fixed order: every thread its own terms, then pairwise.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice.glsl"
 #define LATTICE_ENVIRONMENT 2

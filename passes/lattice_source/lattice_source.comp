@@ -1,6 +1,4 @@
 // lattice_source.comp -- the suns' unscattered light in a cell: sum of E T', and of E T' direction.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"

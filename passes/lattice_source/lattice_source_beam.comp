@@ -9,8 +9,6 @@
 // sun grazes was dark, and the one it is square to too bright.
 // What surfaces keep from the cell is the fraction of that light that it does not see: kept apart, because
 // the beam's energy is compared without surfaces.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define BEAMS_AT 5

@@ -3,8 +3,6 @@
 // One workgroup per sun and channel. What the beam loses is the integral of 1 - e^-tau' over the
 // faces where it leaves the box. Sums have a fixed order: every thread its own terms, then
 // pairwise.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 1

@@ -1,6 +1,4 @@
 // light_field.comp -- see light_field.h; one thread a texel; built for each format of the images, FIELD_FORMAT.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -1,6 +1,4 @@
 // light_points.comp -- see light_points.h; one thread a texel.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "light_points_args.h"
 

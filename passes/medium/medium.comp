@@ -1,7 +1,5 @@
 // medium.comp -- all shapes resampled to voxels: the mean texture value (built with TYN_DENSITY, for that mode), or
 // summed coefficients; with grids of colours (TYN_COLORS) what varies by them is averaged as a product.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2

@@ -1,6 +1,4 @@
 // medium_bricks.comp -- least and largest value over each brick.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2

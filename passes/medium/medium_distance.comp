@@ -1,8 +1,6 @@
 // medium_distance.comp -- one axis of the Chebyshev distance to the nearest brick that is not empty.
 //
 // max(|dx|, |dy|, |dz|) is separable: the least over x of |dx|, then over y of max(|dy|, that), then z.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "medium_args.h"
 

@@ -4,8 +4,6 @@
 // What the clamps hide is weighed as the picture would see it but for what is before it: J sigma_s' over the square of
 // the distance, of cells that are in the picture. A ghost cell's light is seen, blended, in the outer half of the
 // cell before it alone: an eighth of it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/common/counters.h"
 #include "merge_args.h"

@@ -1,8 +1,6 @@
 // merge_cells.comp -- what a cell scatters towards the eye of the light that has scattered before, and of that
 // of VPLs and of the sky's mean, which come
 // from all around as well.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "merge_args.h"
 #include "shaders/lattice/lattice.glsl"

@@ -1,6 +1,4 @@
 // merge_ordinates.comp -- adds what a cell scatters towards the eye of the ordinates' unscattered light.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
 #include "shaders/medium/medium.glsl"
 #define COLUMNS_AT 4

@@ -5,8 +5,6 @@
 // / (1 - f); what is scattered forward goes to the eye through e^-tau, and the difference of the depths of the
 // way there is summed over the cells that it passes. Of 1 / r^2 there is what the march leaves (radial_rest), which
 // is smooth, or the mean over the cell.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_BLOCK 0
 #define PHASE_TABLES 12
 #define PHASE_TABLED (tabled != 0u)

@@ -2,8 +2,6 @@
 //
 // One workgroup. The light of a folded ordinate goes to the nearest one that is kept, whose direction
 // and size become the means, weighted with light.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"

@@ -1,6 +1,4 @@
 // ordinates_gather.comp -- what comes from each region; a thread per region.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"

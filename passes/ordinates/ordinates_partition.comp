@@ -5,8 +5,6 @@
 // regions of fan ordinates, each cut on until it has one.
 // The axes of the cuts come from a first tree that ignores importance, so that nothing but the map can
 // change them.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"

@@ -1,6 +1,4 @@
 // ordinates_rows.comp -- luminance times importance, summed along the rows; a workgroup per row.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/light/environment.glsl"
 #include "shaders/light/sky.glsl"

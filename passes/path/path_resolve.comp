@@ -1,7 +1,5 @@
 // path_resolve.comp -- merges what the threads of each pixel found into the pixel's running statistics and
 // writes the image so far. One thread a pixel, in a fixed order.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 #include "shaders/common/scene_args.h"
 

@@ -1,6 +1,4 @@
 // path_trace.comp -- samples of an image: each thread follows some paths of one pixel.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;

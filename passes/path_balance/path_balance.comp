@@ -6,8 +6,6 @@
 // lamplight are followed from the lamps, and the points are spared it. And a boundary's point
 // hardly ever finds the small patches that lamps light: what surfaces reflect out of the box is
 // followed from the surfaces.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = true;

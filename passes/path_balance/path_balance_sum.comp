@@ -2,8 +2,6 @@
 // that are inside the media and what is missing. One thread a value.
 //
 // The standard error of the imbalance is that of what is given less what is taken, over what is given.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/balance_result.h"
 #include "shaders/path/path_args.h"
 

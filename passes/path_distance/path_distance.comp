@@ -1,6 +1,4 @@
 // path_distance.comp -- where the ray through the middle of each pixel meets the first surface.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/colour/packed_colour.glsl"

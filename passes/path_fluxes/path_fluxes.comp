@@ -9,8 +9,6 @@
 // Nothing is drawn by the eye: directions are those of the phase function.
 //
 // All paths of a thread are one sample of the statistics (path_fluxes_sum.comp).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;

@@ -3,8 +3,6 @@
 // A thread's mean over n paths has n times less variance than a path, so threads are weighed by n, whatever each
 // dispatch's n was (Chan, Golub and LeVeque, 1983); of K threads in all sum n (mean_i - mean)^2 / (K - 1) is a
 // path's variance. Fixed order: every lane its own threads, then pairwise.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_FLUX_LANES) in;

@@ -1,7 +1,5 @@
 // path_probe.comp -- samples of the light field at points: each thread follows some paths from one point, in
 // all directions.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = true;

@@ -1,7 +1,5 @@
 // path_probe_resolve.comp -- merges what the threads of each point found into the point's running statistics.
 // One thread a value, in a fixed order.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,4 @@
 // probe.comp -- fluence and net flux at points: the lattice's moments and what is left of the suns.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "probe_args.h"
 #include "probe_local.h"
 #include "shaders/light/ordinate_args.h"

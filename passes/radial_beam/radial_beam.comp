@@ -1,7 +1,5 @@
 // radial_beam.comp -- the mean of the medium around local lights; a thread per direction. Built for both modes
 // (medium_value.glsl).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"

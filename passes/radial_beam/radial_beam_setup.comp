@@ -1,6 +1,4 @@
 // radial_beam_setup.comp -- one thread per light: lays out its grid.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"

@@ -1,6 +1,4 @@
 // radial_lights.comp -- see radial_lights.h; one thread a light.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/radial_args.h"
 
 layout(local_size_x = 64) in;

@@ -1,7 +1,5 @@
 // raymarch.comp -- one thread a pixel. Built with RAYMARCH_GREY for a medium that is the same in all channels, and for
 // coefficients that differ between channels or media.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "raymarch_bindings.glsl"
 #include "shaders/common/camera.glsl"

@@ -1,6 +1,4 @@
 // raymarch_background.comp -- pixels in which no medium can be seen.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/camera.glsl"
 #include "shaders/march/background.glsl"
 #include "shaders/march/host_depth.glsl"

@@ -1,6 +1,4 @@
 // rooms_cells.comp -- the room of each cell and VPL.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rooms_args.h"
 #include "shaders/walls/rooms.h"
 #include "shaders/lattice/lattice.glsl"

@@ -1,6 +1,4 @@
 // rooms_links.comp -- joins the cells that open links join, one thread a cell.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rooms_args.h"
 #include "shaders/walls/walls_links.glsl"
 #include "shaders/walls/rooms.h"

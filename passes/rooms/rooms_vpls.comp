@@ -2,8 +2,6 @@
 //
 // A ray of the map goes to the first surface, so every place on it is in the VPL's room. One in a cell without a wall
 // tells which that is, wherever the lattice's links are cut; a ray counts if the one beside it tells the same.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rooms_args.h"
 #define LATTICE_ROOMS 4 // as links join them
 #include "shaders/walls/lattice_rooms.glsl"

@@ -1,6 +1,4 @@
 // rsm_fragment.frag -- the power that the surface in a texel reflects, and where and how large it is.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MATERIALS_AT 4
 #include "rsm_bindings.glsl"
 #include "shaders/surfaces/reflectance.glsl"

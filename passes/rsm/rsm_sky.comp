@@ -3,8 +3,6 @@
 // Every place stands for as much of the surfaces as any other, so weighted as rsm_sky_places.glsl has it. Places run along the triangles in the
 // hierarchy's order and lie on the maps along a Hilbert curve, as their readers take texels: neighbours there are near each
 // other.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rsm_sky_args.h"
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4

@@ -1,6 +1,4 @@
 // rsm_sky_areas.comp -- what triangles that reflect count for (rsm_sky_args.h). One workgroup a block.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rsm_sky_args.h"
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4

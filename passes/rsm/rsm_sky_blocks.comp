@@ -1,6 +1,4 @@
 // rsm_sky_blocks.comp -- what all blocks before each count for, and the whole. One workgroup.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rsm_sky_args.h"
 
 layout(local_size_x = RSM_SKY_BLOCK) in;

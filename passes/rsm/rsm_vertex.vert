@@ -1,6 +1,4 @@
 // rsm_vertex.vert -- the corners of the scene's triangles as a light sees them.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "rsm_bindings.glsl"
 
 invariant gl_Position; // two kernels must agree on depths

@@ -1,6 +1,4 @@
 // scatter_lut_sum.comp -- sums the series of one depth and row for all angles.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;

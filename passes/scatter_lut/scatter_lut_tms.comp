@@ -1,6 +1,4 @@
 // scatter_lut_tms.comp -- sums the series of four depths of one row and cone for all angles.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/phase/scatter_lut_map.glsl"
 #include "shaders/common/counters.h"
 

@@ -1,7 +1,5 @@
 // shade_alone.comp -- smooth light of pieces of surface that no place for it tells of, as bars thinner than a pixel: they
 // take all VPLs themselves.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #define SHADE_SKY_AT (MATERIALS_AT + 3)

@@ -1,6 +1,4 @@
 // shade_edges.comp -- pixels that show several pieces of surface, or one beside nothing: one after another.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"

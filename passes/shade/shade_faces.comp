@@ -4,8 +4,6 @@
 // fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Where surfaces close by send light
 // back (walls_beyond) what leaves is more than the net flux by that: their albedo times their share of phi / 4 + F.n / 2. Its
 // directions are those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
 #include "shade_faces.h"
 #include "shaders/common/scene_args.h"

@@ -4,8 +4,6 @@
 // on the way to the sun, in directions of the forward lobe, are looked up in its shadow map. That is soft
 // enough for a lattice to hold; per pixel so few places would show as copies of the shadow. Those beyond a wall of
 // the lattice send nothing: a roof that the cell is under is lit from above.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
 #include "shaders/common/scene_args.h"
 #define MEDIUM_BLOCK 0

@@ -1,6 +1,4 @@
 // shade_places.comp -- blocks of pixels that take all of the shared light themselves: those that shade_gather.comp lists.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 #define SHADE_SKY_AT (SHADE_AT + 3)

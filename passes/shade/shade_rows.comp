@@ -1,6 +1,4 @@
 // shade_rows.comp -- Light of VPLs and of the sky summed over the pattern along rows. shade_gather.comp sums these sums along columns.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
 #include "shaders/common/camera.glsl"
 

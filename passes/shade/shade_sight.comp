@@ -1,8 +1,6 @@
 // shade_sight.comp -- which patches of the box's faces are seen from places around it: a ray a patch.
 //
 // Far fewer places than pixels, and between them it is interpolated: light of so large emitters has no sharp shadows.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice.glsl"

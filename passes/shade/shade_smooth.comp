@@ -1,7 +1,5 @@
 // shade_smooth.comp -- where blocks of several pixels have one place for smooth light: that of the lattice, and of suns
 // what the medium scattered forward, added to that of VPLs.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_place.glsl"
 #include "shade_piece.glsl"
 

@@ -1,7 +1,5 @@
 // shade_surface.comp -- radiance of the surfaces towards the camera. One thread a pixel; those that show several pieces
 // of surface are left to shade_edges.comp.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_piece.glsl"
 #include "shade_whole.glsl"
 #define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)

@@ -3,8 +3,6 @@
 // Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002, interleaved sampling), and
 // shade_rows.comp and shade_gather.comp sum over the pattern.
 // A thread has several blocks of one place in the pattern.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 #define SHADE_SKY_AT (SHADE_AT + 1)

@@ -1,6 +1,4 @@
 // shadow_map_vertex.vert -- the corners of the scene's triangles as a light sees them.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/light/shadow_args.h"
 

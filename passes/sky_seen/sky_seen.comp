@@ -4,8 +4,6 @@
 // centre. A place in the open is lit by half of the four texels around it, so that shadows are as large as they should be. Next to
 // walls, or where a map's texels are wider than a cell, that would let light into closed rooms: there a cell is dark
 // unless one of its places is lit for sure.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/light/shadow_frame.glsl"

@@ -2,8 +2,6 @@
 //
 // A map is fitted around what of the surfaces is near the box that pictures are of, as its direction sees it, or, a second one, around all. Depths reach over all
 // surfaces. Maps are two texels wider than need be on all sides, so that the texels around any place inside belong to the map.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/sky_map_args.h"
 #include "shaders/light/ordinate_args.h"

@@ -1,6 +1,4 @@
 // sky_shadows_vertex.vert -- the corners of the scene's triangles as a direction of the sky sees them.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/light/sky_map_args.h"
 #include "shaders/surfaces/surface_args.h"

@@ -1,6 +1,4 @@
 // tonemap_display.comp -- one pixel of the display transform.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/colour/display.glsl"
 #include "tonemap_args.h"
 

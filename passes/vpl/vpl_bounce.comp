@@ -3,8 +3,6 @@
 // First of what the first VPLs light, P in all: VPLs of that, whose own light surfaces reflect, R in all. Then of all further
 // reflections: what R lights is taken to be lit by all that comes after it, too. If a share q = R / P is reflected each time,
 // P + R + q R + q^2 R + ... is P + R / (1 - q); the map is (1 - q) times that, whose sum is P, as vpl_further.comp has it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/radial_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "vpl_bounce_args.h"

@@ -1,7 +1,5 @@
 // vpl_distances.comp -- what each VPL sees: the distance of the first surface in every direction of its map, and its plane;
 // and what that reflects of its light.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/light/vpl_visibility.glsl"

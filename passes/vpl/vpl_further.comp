@@ -3,8 +3,6 @@
 // They come with P, what surfaces reflect of the first VPLs' light, and lie where vpl_bounce.comp takes all further reflections to
 // be. If surfaces reflect q P of it they get P / (1 - q): what these VPLs send out, less what surfaces reflect of it, is P, and no
 // light is lost or made.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 

@@ -4,8 +4,6 @@
 // lie on one smooth piece of a surface with one that vpl_strata.comp has chosen, weighted by power: it does
 // not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"

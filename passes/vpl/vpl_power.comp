@@ -1,6 +1,4 @@
 // vpl_power.comp -- the power of all VPLs: what bins count in.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 

@@ -3,8 +3,6 @@
 // Strata are equally heavy and start anew at every light, whose last one may be lighter. Edges move
 // smoothly when the light does, so that VPLs do; no VPL stands for two lights. If there are hardly more VPLs
 // than lights the lights are taken together.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "vpl_args.h"
 #include "shaders/beams/radial_args.h"
 

@@ -1,7 +1,5 @@
 // vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
 // They are power times nearness.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 
 #include "vpl_elements.glsl"
 

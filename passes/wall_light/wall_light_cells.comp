@@ -1,7 +1,5 @@
 // wall_light_cells.comp -- the cells that have walls in rooms that virtual point lights shine in: few, so that a list of them
 // keeps all threads of wall_light_vpls.comp busy on devices that run them in groups.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "wall_light_args.h"
 #include "shaders/walls/walls_links.glsl"

@@ -3,8 +3,6 @@
 //
 // The map's texels are directions on a grid with its edges: halves there. A ray that ends beyond the lattice's last links
 // meets no wall of a cell.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #define MEDIUM_BLOCK 0
 #define RADIALS_AT 1

@@ -1,6 +1,4 @@
 // wall_light_reflect.comp -- what the walls of a cell send out of the light that arrives there from virtual point lights.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #include "shaders/walls/walls_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"

@@ -3,8 +3,6 @@
 //
 // The walls of the lattice are stairs: those of a box of seven cells are some percent more or less than its
 // own, and farther or nearer.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/rooms.h"

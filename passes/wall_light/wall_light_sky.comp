@@ -3,8 +3,6 @@
 //
 // Areas as in wall_light_suns.comp. What passes the surfaces and the medium is that of the cell, which is on the lit side of the
 // walls if its centre is.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0

@@ -1,7 +1,5 @@
 // wall_light_sum.comp -- the light of virtual point lights (VPLs) that the walls of a part of the lattice get, by room. One
 // workgroup per part; sums have a fixed order.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;

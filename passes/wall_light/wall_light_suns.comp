@@ -4,8 +4,6 @@
 // met by A |n.axis| / dx^2 links of an axis, so all areas add up to A. What arrives there, times albedo, is the
 // power that the walls send out: 4 pi dx^2 area times their radiance (walls_args.h). Light in the forward peak of the
 // medium counts as not scattered (delta scaling), as in the lattice.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0

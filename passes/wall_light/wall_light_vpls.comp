@@ -3,8 +3,6 @@
 // Areas as in wall_light_suns.comp. Links that meet surfaces of about the same normal are taken together, at their mean
 // place. 1 / r^2 is bounded by the disc that a VPL stands for and by half a cell. Whether a VPL is seen is
 // asked of the lattice, which no light leaks through.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0

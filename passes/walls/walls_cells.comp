@@ -1,6 +1,4 @@
 // walls_cells.comp -- of each cell: the albedo its cut links meet, and the planes of its walls.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/lattice/lattice.glsl"

@@ -3,8 +3,6 @@
 //
 // What several triangles do to a cell is put together by atomic or and minimum, which do not depend on
 // their order. A link is judged once, from one of its ends.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"

@@ -2,8 +2,6 @@
 //
 // A link stands for the tube around it: it is cut if most rays of four places in the cell meet something, so that a leaf beside
 // a cloud cuts none.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "walls_beyond_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/lattice/cell_places.glsl"

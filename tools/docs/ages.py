@@ -9,6 +9,7 @@ import hashlib
 import os
 import re
 
+PREAMBLE = "#version 460\n#extension GL_GOOGLE_include_directive : require\n" # of kernel.py, for shaders without a #version
 SOURCES = ("passes", "shaders", "engine/include")
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+["<]([^">]+)[">]', re.M)
@@ -56,6 +57,8 @@ class Kernels:
         """(what is compiled, what it includes)"""
         if path not in self.texts:
             text = COMMENT.sub(" ", self._read(path))
+            if path.endswith((".comp", ".vert", ".frag")) and "#version" not in text:
+                text = PREAMBLE + text
             lines = (" ".join(line.split()) for line in text.split("\n"))
             self.texts[path] = "\n".join(line for line in lines if line), INCLUDE.findall(text)
         return self.texts[path]

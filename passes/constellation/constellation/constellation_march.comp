@@ -6,8 +6,6 @@
 // of the pixel that no surface before the slice hides. A dispatch lights `rounds` slices of each ray, or one by some of the
 // lights, and hands the rays on in the images `state_*`; neighbouring rays look for their next slice together and light it
 // together.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "constellation_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/common/counters.h"

@@ -1,7 +1,5 @@
 // validity_mask.comp -- from the farthest slice to the nearest until one is not empty; a thread a pixel. Built for both
 // modes of the medium.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/camera.glsl"
 #include "../common/slices.glsl"
 #include "validity_mask_args.h"

@@ -1,6 +1,4 @@
 // voxel_distance_columns.comp -- squared distance within a slice; a thread per column along y, neighbours along x.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "voxel_distance_args.h"
 
 layout(local_size_x = 64) in;

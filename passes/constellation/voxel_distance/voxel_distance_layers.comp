@@ -1,7 +1,5 @@
 // voxel_distance_layers.comp -- the distance, beside the density; a thread per column along z, neighbours along x. Built
 // for both modes of the medium.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "voxel_distance_args.h"
 
 layout(local_size_x = 64) in;

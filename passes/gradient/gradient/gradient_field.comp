@@ -4,8 +4,6 @@
 //
 // A group of 4 x 4 x 4 cells goes through the points of each grid that may reach it, 64 at a time; each thread loads one, and those that are
 // samples are taken by all, in their order: sums do not depend on anything else.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gradient_args.h"
 #include "shaders/common/counters.h"
 TYN_ARGS(gradient_args args);

@@ -1,6 +1,4 @@
 // gradient_reference.comp -- what errors are shares of: light that all samples of level 0 see scattered towards the eye.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gradient_args.h"
 TYN_ARGS(gradient_args args);
 #define MEDIUM_BLOCK 0

@@ -2,8 +2,6 @@
 //
 // A thread for each point that a sample traces: itself, six a difference apart for the gradient and, where it may be split, six at the
 // valid radius, and one that looks to the eye.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gradient_bindings.glsl"
 #include "gradient_grid.glsl"
 

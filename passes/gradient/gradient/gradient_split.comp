@@ -3,8 +3,6 @@
 //
 // Near: within the valid radius, as published; and all whose cells touch the sample's, so that grids which do not halve each
 // other leave no gap. Lists are in any order; what is done with a point does not depend on it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gradient_args.h"
 #include "shaders/common/counters.h"
 TYN_ARGS(gradient_args args);

@@ -1,6 +1,4 @@
 // gradient_voxels.comp -- the field of radiance towards the eye, followed for each of its cells: what samples are compared with.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "gradient_bindings.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -1,7 +1,5 @@
 // light_list.comp -- all lights as they shine on the medium: the constellation turned with the environment, then
 // suns and lamps of the scene.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "light_list_args.h"
 #include "shaders/common/scene_args.h"
 

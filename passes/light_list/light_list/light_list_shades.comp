@@ -1,8 +1,6 @@
 // light_list_shades.comp -- the directions of the sky that each light stands for: one group.
 //
 // A thread a direction finds the light that is nearest to it; then one a light gathers its own, in their order.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "light_list_args.h"
 #include "../common/light_shades_args.h"
 #include "shaders/light/ordinate_args.h"

@@ -1,6 +1,4 @@
 // median_cut_regions.comp -- cuts the map into regions; one workgroup, which looks for the best cut of a region together.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "median_cut_args.h"
 #include "shaders/light/sky.glsl"
 

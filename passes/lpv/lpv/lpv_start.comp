@@ -2,8 +2,6 @@
 //
 // Light that has scattered once is not added to the sum (but for the setting `own`): the march draws what lights it. That which
 // surfaces have reflected is.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_links.glsl"
 #include "shaders/common/quotient.glsl"
 #include "shaders/common/counters.h"

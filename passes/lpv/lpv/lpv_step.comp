@@ -1,8 +1,6 @@
 // lpv_step.comp -- one iteration: what arrives in a cell from its 26 neighbours, and what it sends on.
 //
 // A gather: each thread reads what the neighbours have sent, and nothing is added up by several.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_links.glsl"
 #include "shaders/common/quotient.glsl"
 #include "shaders/common/scene_args.h"

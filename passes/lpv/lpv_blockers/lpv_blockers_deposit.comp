@@ -1,8 +1,6 @@
 // lpv_blockers_deposit.comp -- a thread a texel of the maps along the axes: the surface in it blocks.
 //
 // A surface is in up to three maps. It counts in that of the main direction of its normal, which sees all of its area best.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_blockers_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "../common/deposit.glsl"

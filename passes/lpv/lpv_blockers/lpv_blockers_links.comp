@@ -1,6 +1,4 @@
 // lpv_blockers_links.comp -- of light that comes to a cell along its 26 links, how much is blocked.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_blockers_args.h"
 #include "shaders/walls/walls_links.glsl"
 

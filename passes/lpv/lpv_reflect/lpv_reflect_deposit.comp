@@ -1,6 +1,4 @@
 // lpv_reflect_deposit.comp -- a thread a texel of a light's map: into the cell in front of the surface there.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_reflect_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/light/rsm_args.h"

@@ -1,6 +1,4 @@
 // lpv_reflect_sum.comp -- power of a block of texels, of the channel that has most: what bounds the sums.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_reflect_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"
 

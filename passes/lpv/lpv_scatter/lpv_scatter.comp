@@ -1,6 +1,4 @@
 // lpv_scatter.comp -- a thread a ray of a light: at random places of its lit part, light that scatters there.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "lpv_scatter_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/random/rng.glsl"

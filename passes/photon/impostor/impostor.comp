@@ -1,6 +1,4 @@
 // impostor.comp -- one thread a pixel: where its ray meets the plane of the march, what that shows there.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shaders/march/background.glsl"
 #include "impostor_args.h"

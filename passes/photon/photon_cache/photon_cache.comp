@@ -1,8 +1,6 @@
 // photon_cache.comp -- a cell's sum over all generations that count, and what it means.
 //
 // I = I - H_old + H_new in whole numbers (Elek et al. 2012, Sec 4.2). A sum that has missed generations that are gone is made anew.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "photon_cache_args.h"
 #include "../common/photon_args.h"
 #include "shaders/common/counters.h"

@@ -1,6 +1,4 @@
 // photon_cache_turn.comp -- notes which generations the sum has.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/photon_args.h"
 
 layout(local_size_x = 1) in;

@@ -8,8 +8,6 @@
 // Colour is as in path.glsl: directions and collisions are drawn for the hero.
 //
 // A turn of the loop is a brick that is crossed, or a point; threads of a subgroup so scatter and fly together.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;

@@ -1,6 +1,4 @@
 // photon_trace_clear.comp -- empties the slots that this frame's generations go to.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "photon_trace_args.h"
 #include "../common/photon_args.h"
 

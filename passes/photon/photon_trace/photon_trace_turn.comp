@@ -1,6 +1,4 @@
 // photon_trace_turn.comp -- which generations are traced in this frame, and how many workgroups that takes.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "photon_trace_args.h"
 #include "../common/photon_args.h"
 

@@ -3,8 +3,6 @@
 // Weights of the 3^3 cells around: f_exp of the distance, an exponential of the mean extinction between the two places,
 // truncated at r = 1.5 cells and normalised; times f_lin = 1 - |D(p) - D(q)|, D the density over its largest. The anisotropy of
 // cell q goes on as g^delta, delta the difference of the penetration depths.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "photon_upsample_args.h"
 #include "../common/photon_args.h"
 #define MEDIUM_AT 0

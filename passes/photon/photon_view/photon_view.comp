@@ -2,8 +2,6 @@
 //
 // Light in a Henyey-Greenstein lobe of g' about a direction is scattered, by a medium of g, into one of g g' (Elek et al. 2012,
 // App. C).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "photon_view_args.h"
 #include "shaders/common/counters.h"
 #define MEDIUM_AT 0

@@ -1,6 +1,4 @@
 // merge_grids_sum.comp -- see merge_grids.h; one thread a cell.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"

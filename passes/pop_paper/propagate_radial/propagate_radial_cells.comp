@@ -1,7 +1,5 @@
 // propagate_radial_cells.comp -- the medium's mean coefficients over each cell and the cosine at which the eye
 // sees it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "../common/propagate_radial.glsl"

@@ -1,7 +1,5 @@
 // propagate_radial_collect.comp -- what a batch of grids sent to the eye, as tiles of an image. Beyond the first
 // and the last cell of a direction theirs goes on, so that none is mixed with nothing.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

@@ -1,7 +1,5 @@
 // propagate_radial_lit.comp -- how far surfaces let the light of a local light come along each direction: one thread a
 // direction. Built for lamps, whose shadow maps are looked at, and for VPLs (OF_VPLS), which have maps of what they see.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

@@ -1,7 +1,5 @@
 // propagate_radial_setup.comp -- one workgroup per light: lays out its grid, and what of its light starts in
 // each direction.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

@@ -1,7 +1,5 @@
 // propagate_radial_start.comp -- which cells are in the grid, and the light before the first iteration: one
 // thread goes outwards along a direction.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

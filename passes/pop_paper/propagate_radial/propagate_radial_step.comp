@@ -1,7 +1,5 @@
 // propagate_radial_step.comp -- one iteration: every cell gathers from its six neighbours (Eqs 2-6) and adds
 // what it now sends to the eye (Eqs 7-8).
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

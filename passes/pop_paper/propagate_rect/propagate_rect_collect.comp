@@ -1,6 +1,4 @@
 // propagate_rect_collect.comp -- what a batch of grids sent to the eye, as tiles of an image.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 

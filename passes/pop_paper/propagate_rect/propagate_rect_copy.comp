@@ -1,6 +1,4 @@
 // propagate_rect_copy.comp -- the last state that was made, where the last iteration would have put it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 

@@ -1,7 +1,5 @@
 // propagate_rect_lit.comp -- how far surfaces let the light of a grid come along its direction: one thread a column of
 // cells. Built for suns, whose shadow maps are looked at, and for other ordinates (TRACED), which have none: rays.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 

@@ -1,7 +1,5 @@
 // propagate_rect_next.comp -- is the next iteration of a batch still needed? Not where no cell was as bright as the threshold
 // after the one before, nor behind one that was not needed: nothing was as bright as that. One thread.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 

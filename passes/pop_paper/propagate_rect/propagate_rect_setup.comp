@@ -1,6 +1,4 @@
 // propagate_rect_setup.comp -- places the grid of each ordinate, and prefilters.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "shaders/light/ordinate_args.h"
 #include "propagate_rect_args.h"

@@ -1,7 +1,5 @@
 // propagate_rect_shrink.comp -- the medium at a resolution that suits the cells of many grids: a box filter over its
 // voxels. Built for both modes: TYN_DENSITY is defined for mode DENSITY.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 

@@ -1,7 +1,5 @@
 // propagate_rect_start.comp -- the light before the first iteration (section 4.1): one thread marches a
 // column of cells along the light.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "../common/propagate.glsl"
 #include "propagate_rect_args.h"
 

@@ -1,6 +1,4 @@
 // residuum_collect.comp -- what all iterations sent to the eye.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "residuum_args.h"
 #include "shaders/phase/hg.glsl"
 

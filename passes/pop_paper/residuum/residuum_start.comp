@@ -1,6 +1,4 @@
 // residuum_start.comp -- the light of all aligned grids, by power, in the medium's own grid.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"

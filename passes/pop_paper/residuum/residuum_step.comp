@@ -1,6 +1,4 @@
 // residuum_step.comp -- one iteration: every cell takes a sixth of what each of its neighbours has.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

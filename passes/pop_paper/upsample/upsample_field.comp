@@ -1,6 +1,4 @@
 // upsample_field.comp -- see upsample.h; one thread a texel.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"

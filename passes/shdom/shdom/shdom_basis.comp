@@ -1,6 +1,4 @@
 // shdom_basis.comp -- spherical harmonics in the directions of the quadrature and of the principal ordinates; a thread each.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "../common/delta_bands.glsl"

@@ -1,6 +1,4 @@
 // shdom_direct.comp -- light of a batch of principal ordinates that arrives in the cells unscattered, W/m^2. y: ordinates.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #define MEDIUM_BLOCK 0
 #define COLUMNS_AT 1

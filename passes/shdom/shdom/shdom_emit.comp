@@ -1,6 +1,4 @@
 // shdom_emit.comp -- the source function of the cells towards a batch of ordinates, W/(m^3 sr). y: groups of ordinates.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,4 @@
 // shdom_gather.comp -- radiance at the middle of cells, between the four lines next to it. y: ordinates of the batch.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "shdom_lines.glsl"
 

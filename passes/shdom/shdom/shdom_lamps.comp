@@ -1,6 +1,4 @@
 // shdom_lamps.comp -- adds the light of lamps that arrives in a cell unscattered, as spherical harmonics.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #define MEDIUM_BLOCK 0
 #define RADIALS_AT 1

@@ -1,6 +1,4 @@
 // shdom_lines.comp -- radiance along the lines of a batch of ordinates: a thread follows a line through all slices. y: ordinates.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "shdom_lines.glsl"
 

@@ -1,8 +1,6 @@
 // shdom_moments.comp -- fluence and flux of a channel's scattered light, for probes.
 //
 // Unscattered light is what the sources of the lattice count as that, with f = g^2: more of it than the solver has.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"
 

@@ -1,6 +1,4 @@
 // shdom_next.comp -- the source function of a cell, per metre: what scatters of all light, and emission. y: coefficients.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "../common/delta_bands.glsl"
 #include "shaders/common/counters.h"

@@ -1,8 +1,6 @@
 // shdom_project.comp -- radiance of a batch of ordinates, cell by cell, as spherical harmonics. y: groups of coefficients.
 //
 // A thread sums over the ordinates in their order, so that two runs give the same bytes.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 
 layout(local_size_x = 64) in;

@@ -1,8 +1,6 @@
 // shdom_view_cells.comp -- what a cell sends towards the eye.
 //
 // Of the light that arrives unscattered the bands' part of the phase function, which the solver has, is replaced by all of it.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_view_args.h"
 #define MEDIUM_BLOCK 0
 #define COLUMNS_AT 6

@@ -1,6 +1,4 @@
 // shdom_view_peaks.comp -- adds what a cell scatters on in forward peaks, of the light behind it that goes to the eye.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
 #include "shdom_view_args.h"
 #include "shaders/common/camera.glsl"

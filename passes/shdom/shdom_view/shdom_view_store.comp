@@ -1,8 +1,6 @@
 // shdom_view_store.comp -- light towards the eye as the march reads it: not negative, and continued around the lattice.
 //
 // A cell without medium has what its neighbours have, so that light does not fall off towards the medium's edge.
-#version 460
-#extension GL_GOOGLE_include_directive : require
 #include "shdom_view_args.h"
 #include "shaders/common/counters.h"
 
