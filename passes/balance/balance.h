@@ -38,5 +38,4 @@ typedef struct tyn_balance_params {
     X(BALANCE, FOUND, found, SCRATCH, BUFFER, "struct balance_light[]"), \
     X(BALANCE, BALANCE, balance, OUT, BUFFER, "tyn_balance, W")
 // clang-format on
-enum { BALANCE_PORTS(TYN_PORT_ENUM), BALANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_balance;
+TYN_PASS(BALANCE, balance);

@@ -26,12 +26,8 @@ void tyn_beam_plan(tyn_beam_params *params, const struct medium_block *medium,
     X(BEAM, COLUMN, column, OUT, IMAGE_3D, \
         "density (or sigma_s) integrated along the light, m (homogeneous: its mean)", \
         .format = VK_FORMAT_R32_SFLOAT), \
-    X(BEAM, TAU_A, tau_a, OUT, IMAGE_3D, \
-        "sigma_a integrated along the light, likewise", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(BEAM, TAU_P, tau_p, OUT, IMAGE_3D, \
-        "sigma_s outside the forward peak integrated along the light, likewise", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(BEAM, TAU_A, tau_a, OUT, RGBA_3D, "sigma_a integrated along the light, likewise"), \
+    X(BEAM, TAU_P, tau_p, OUT, RGBA_3D, "sigma_s outside the forward peak integrated along the light, likewise"), \
     X(BEAM, COUNTERS, counters, OUT, BUFFER, "struct counters_block: nodes that were not finite")
 // clang-format on
-enum { BEAM_PORTS(TYN_PORT_ENUM), BEAM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_beam;
+TYN_PASS(BEAM, beam);

@@ -22,5 +22,4 @@ typedef struct tyn_columns_params {
     X(COLUMNS, COUNTERS, counters, OUT, BUFFER, "struct counters_block: pairs of cells that were not finite"), \
     X(COLUMNS, NODES, nodes, SCRATCH, BUFFER, "medium integrated along the columns of a batch of ordinates")
 // clang-format on
-enum { COLUMNS_PORTS(TYN_PORT_ENUM), COLUMNS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_columns;
+TYN_PASS(COLUMNS, columns);

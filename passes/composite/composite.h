@@ -12,11 +12,8 @@ typedef struct tyn_composite_params {
 #define COMPOSITE_PORTS(X) \
     X(COMPOSITE, RADIANCE, radiance, IN, IMAGE_2D, "radiance of the medium alone, W/(m^2 sr)"), \
     X(COMPOSITE, TRANSMITTANCE, transmittance, IN, IMAGE_2D, "transmittance to the host's surface"), \
-    X(COMPOSITE, COLOR, color, INOUT, IMAGE_2D, \
-        "the host's picture, linear; alpha is kept", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(COMPOSITE, COLOR, color, INOUT, RGBA_2D, "the host's picture, linear; alpha is kept"), \
     X(COMPOSITE, HALF_DEPTH, half_depth, OPTIONAL, IMAGE_2D, "of halve_depth: where the medium's rays ended"), \
     X(COMPOSITE, FULL_DEPTH, full_depth, OPTIONAL, IMAGE_2D, "hardware depth of the host's surfaces")
 // clang-format on
-enum { COMPOSITE_PORTS(TYN_PORT_ENUM), COMPOSITE_NUM_PORTS };
-
-extern const tyn_pass_desc tyn_pass_composite;
+TYN_PASS(COMPOSITE, composite);

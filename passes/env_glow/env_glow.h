@@ -14,9 +14,8 @@ typedef struct tyn_env_glow_params {
 // clang-format off
 #define ENV_GLOW_PORTS(X) \
     X(ENV_GLOW, SKY, sky, IN, IMAGE_2D, "the map without its suns, latitude-longitude, with or without mips"), \
-    X(ENV_GLOW, GLOW, glow, OUT, IMAGE_3D, \
-        "that map smeared, in the same units; levels of the forward depth along z. Read it with glow.glsl", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(ENV_GLOW, GLOW, glow, OUT, RGBA_3D, \
+        "that map smeared, in the same units; levels of the forward depth along z. Read it with glow.glsl"), \
     X(ENV_GLOW, COUNTERS, counters, OUT, BUFFER, \
         "struct counters_block: texels of the map that were not finite, of the first level that were clamped"), \
     X(ENV_GLOW, SERIES, series, SCRATCH, BUFFER, \
@@ -26,5 +25,4 @@ typedef struct tyn_env_glow_params {
         "struct glow_coefficient[m][l]: spherical harmonics of the map"), \
     X(ENV_GLOW, LEVELS, levels, SCRATCH, BUFFER, "Fourier sums of the smeared map's rows")
 // clang-format on
-enum { ENV_GLOW_PORTS(TYN_PORT_ENUM), ENV_GLOW_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_env_glow;
+TYN_PASS(ENV_GLOW, env_glow);

@@ -12,10 +12,9 @@ typedef struct tyn_env_importance_params {
 // clang-format off
 #define ENV_IMPORTANCE_PORTS(X) \
     X(ENV_IMPORTANCE, ENV_MAP, env_map, IN, IMAGE_2D, "latitude-longitude map of any size"), \
-    X(ENV_IMPORTANCE, SKY, sky, OUT, IMAGE_2D, \
+    X(ENV_IMPORTANCE, SKY, sky, OUT, RGBA_2D, \
         "SKY_WIDTH x SKY_HEIGHT, SKY_MIPS levels: mean radiance over the texel, map units; luminance x solid " \
-        "angle, so that the level above has the sum of its four", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "angle, so that the level above has the sum of its four"), \
     X(ENV_IMPORTANCE, SUMS, sums, OUT, BUFFER, "sums of the sky over rectangles: struct sky_sum")
 // clang-format on
-enum { ENV_IMPORTANCE_PORTS(TYN_PORT_ENUM), ENV_IMPORTANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_env_importance;
+TYN_PASS(ENV_IMPORTANCE, env_importance);

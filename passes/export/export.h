@@ -12,8 +12,6 @@ typedef struct tyn_export_params {
 // clang-format off
 #define EXPORT_PORTS(X) \
     X(EXPORT, RESULT, result, IN, IMAGE_2D, "an output, as large as the view"), \
-    X(EXPORT, HOST, host, INOUT, IMAGE_2D, "the host's image, overwritten", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(EXPORT, HOST, host, INOUT, RGBA_2D, "the host's image, overwritten")
 // clang-format on
-enum { EXPORT_PORTS(TYN_PORT_ENUM), EXPORT_NUM_PORTS };
-
-extern const tyn_pass_desc tyn_pass_export;
+TYN_PASS(EXPORT, export);

@@ -75,8 +75,7 @@ const tyn_pass_desc tyn_pass_gbuffer = {
     .serves = "pictures of surfaces",
     TYN_PASS_TABLES(tyn_gbuffer_params),
     .of_pixels = true,
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = GBUFFER_PORT_DISTANCES,
     .debug_meaning = "distance of what the camera sees",
 };

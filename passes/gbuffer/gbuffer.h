@@ -24,5 +24,4 @@ typedef struct tyn_gbuffer_params {
     X(GBUFFER, SEEN, seen, SCRATCH, IMAGE_2D, "index of the triangle + 1, 0: none", .format = VK_FORMAT_R32_UINT), \
     X(GBUFFER, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)
 // clang-format on
-enum { GBUFFER_PORTS(TYN_PORT_ENUM), GBUFFER_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_gbuffer;
+TYN_PASS(GBUFFER, gbuffer);

@@ -16,12 +16,9 @@ typedef struct tyn_guides_params {
     TYN_GEOMETRY(X##_OPTIONAL, GUIDES), \
     TYN_MATERIALS(X##_OPTIONAL, GUIDES), \
     TYN_GBUFFER(X##_OPTIONAL, GUIDES), \
-    X(GUIDES, ALBEDO, albedo, OUT, IMAGE_2D, \
-        "means over the pixel: albedo, 0 where there is no surface; share that shows one", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(GUIDES, NORMAL, normal, OUT, IMAGE_2D, \
-        "mean normal for shading, world, towards the camera; 0 where there is no surface", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(GUIDES, ALBEDO, albedo, OUT, RGBA_2D, \
+        "means over the pixel: albedo, 0 where there is no surface; share that shows one"), \
+    X(GUIDES, NORMAL, normal, OUT, RGBA_2D, \
+        "mean normal for shading, world, towards the camera; 0 where there is no surface")
 // clang-format on
-enum { GUIDES_PORTS(TYN_PORT_ENUM), GUIDES_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_guides;
+TYN_PASS(GUIDES, guides);

@@ -12,6 +12,4 @@ typedef struct tyn_halve_depth_params {
     X(HALVE_DEPTH, FULL_DEPTH, full_depth, IN, IMAGE_2D, "hardware depth of the host's surfaces"), \
     X(HALVE_DEPTH, HALF_DEPTH, half_depth, OUT, IMAGE_2D, "the same, half as large", .format = VK_FORMAT_R32_SFLOAT)
 // clang-format on
-enum { HALVE_DEPTH_PORTS(TYN_PORT_ENUM), HALVE_DEPTH_NUM_PORTS };
-
-extern const tyn_pass_desc tyn_pass_halve_depth;
+TYN_PASS(HALVE_DEPTH, halve_depth);

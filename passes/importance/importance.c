@@ -66,8 +66,7 @@ const tyn_pass_desc tyn_pass_importance = {
     .summary = "directions whose light matters for the picture (Elek 2014, section 5.2)",
     .serves = "ordinates that follow what the camera sees (ordinates.importance)",
     TYN_PASS_TABLES(tyn_importance_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(IMPORTANCE),
     .debug_meaning = "importance by direction, latitude and longitude of the medium's frame",
 };

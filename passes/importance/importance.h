@@ -29,9 +29,9 @@ typedef struct tyn_importance_params {
     X(IMPORTANCE, IMPORTANCE, importance, OUT, IMAGE_2D, \
         "importance by the direction light comes from, latitude and longitude of M (environment_uv); mean " \
         "over the sphere 1", .format = VK_FORMAT_R32_SFLOAT), \
-    X(IMPORTANCE, FIELD, field, OUT, IMAGE_3D, \
+    X(IMPORTANCE, FIELD, field, OUT, RGBA_3D, \
         "the grid: importance scattered, 1/m^3 per picture; times its mean cosine about the column; sigma_t, " \
-        "1/m", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "1/m"), \
     X(IMPORTANCE, GRID, grid, OUT, BUFFER, "struct importance_grid"), \
     X(IMPORTANCE, CELLS, cells, SCRATCH, BUFFER, "struct importance_cell[]"), \
     X(IMPORTANCE, LIGHT, light, SCRATCH, BUFFER, "struct importance_light[]"), \
@@ -39,5 +39,4 @@ typedef struct tyn_importance_params {
     X(IMPORTANCE, TRACKS, tracks, SCRATCH, BUFFER, "vec2[]: sum of power times length, and times spread"), \
     X(IMPORTANCE, SENT, sent, SCRATCH, BUFFER, "float[]: what leaves the medium along a direction, 1/sr")
 // clang-format on
-enum { IMPORTANCE_PORTS(TYN_PORT_ENUM), IMPORTANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_importance;
+TYN_PASS(IMPORTANCE, importance);

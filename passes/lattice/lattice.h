@@ -37,9 +37,9 @@ typedef struct tyn_lattice_params {
     X(LATTICE, WALL_LIGHT, wall_light, OPTIONAL, BUFFER, \
         "vec3[cell]: radiance that a cell's walls send out beside what they reflect of the lattice's light, " \
         "RGB, W/(m^2 sr)"), \
-    X(LATTICE, MOMENTS, moments, OUT, IMAGE_3D, \
+    X(LATTICE, MOMENTS, moments, OUT, RGBA_3D, \
         "stacked: fluence phi and net flux (x, y, z) of the light that has scattered, came from the " \
-        "environment or was emitted, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "environment or was emitted, W/m^2"), \
     X(LATTICE, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(LATTICE, LEAKS, leaks, OUT, BUFFER, "net power through the box of each line of the last sweep, W"), \
     X(LATTICE, WALL_POWER, wall_power, OUT, BUFFER, \
@@ -64,5 +64,4 @@ typedef struct tyn_lattice_params {
     X(LATTICE, ARRIVED, arrived, SCRATCH, BUFFER, "radiance that arrives at walls by direction"), \
     X(LATTICE, LAUNCHES, launches, SCRATCH, BUFFER, "workgroups of the dispatches of a further cycle")
 // clang-format on
-enum { LATTICE_PORTS(TYN_PORT_ENUM), LATTICE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice;
+TYN_PASS(LATTICE, lattice);

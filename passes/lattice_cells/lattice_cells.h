@@ -13,9 +13,7 @@ typedef struct tyn_lattice_cells_params {
 // clang-format off
 #define LATTICE_CELLS_PORTS(X) \
     TYN_MEDIUM(X, LATTICE_CELLS), \
-    X(LATTICE_CELLS, CELLS, cells, OUT, IMAGE_3D, \
-        "cell means of sigma_s', sigma_a (1/m), g', emission (W/(m^3 sr)); channels stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(LATTICE_CELLS, CELLS, cells, OUT, RGBA_3D, \
+        "cell means of sigma_s', sigma_a (1/m), g', emission (W/(m^3 sr)); channels stacked along z")
 // clang-format on
-enum { LATTICE_CELLS_PORTS(TYN_PORT_ENUM), LATTICE_CELLS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_cells;
+TYN_PASS(LATTICE_CELLS, lattice_cells);

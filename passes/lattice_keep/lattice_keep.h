@@ -9,5 +9,4 @@
     X(LATTICE_KEEP, POWER, power, IN, BUFFER, "of lattice_recall"), \
     X(LATTICE_KEEP, MEMORY, memory, INOUT, BUFFER, "struct lattice_memory_block and moments")
 // clang-format on
-enum { LATTICE_KEEP_PORTS(TYN_PORT_ENUM), LATTICE_KEEP_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_keep;
+TYN_PASS(LATTICE_KEEP, lattice_keep);

@@ -23,16 +23,12 @@ typedef struct tyn_lattice_lamps_params {
     X(LATTICE_LAMPS, VPL_DISTANCES, vpl_distances, OPTIONAL, IMAGE_2D, "of vpl"), \
     X(LATTICE_LAMPS, ROOMS, rooms, OPTIONAL, BUFFER, "rooms.h: with walls and maps of VPLs"), \
     X(LATTICE_LAMPS, OTHERS, others, OPTIONAL, IMAGE_3D, "`source` of suns and ordinates, which is added to"), \
-    X(LATTICE_LAMPS, SOURCE, source, OUT, IMAGE_3D, \
-        "unscattered fluence and flux of all lights, W/m^2; channels stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(LATTICE_LAMPS, VPL_LIGHT, vpl_light, OUT, IMAGE_3D, \
-        "unscattered fluence and flux of VPLs, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_LAMPS, SOURCE, source, OUT, RGBA_3D, \
+        "unscattered fluence and flux of all lights, W/m^2; channels stacked along z"), \
+    X(LATTICE_LAMPS, VPL_LIGHT, vpl_light, OUT, RGBA_3D, "unscattered fluence and flux of VPLs, W/m^2"), \
     X(LATTICE_LAMPS, POWER, power, OUT, BUFFER, "struct lattice_lamp_power per group of lights and channel"), \
-    X(LATTICE_LAMPS, LIT, lit, SCRATCH, IMAGE_3D, \
-        "fluence and flux of each group of lights, before scaling", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_LAMPS, LIT, lit, SCRATCH, RGBA_3D, "fluence and flux of each group of lights, before scaling"), \
     X(LATTICE_LAMPS, UNSHADOWED, unshadowed, SCRATCH, IMAGE_3D, \
         "fluence without shadows, before scaling", .format = VK_FORMAT_R32_SFLOAT)
 // clang-format on
-enum { LATTICE_LAMPS_PORTS(TYN_PORT_ENUM), LATTICE_LAMPS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_lamps;
+TYN_PASS(LATTICE_LAMPS, lattice_lamps);

@@ -21,15 +21,12 @@ typedef struct tyn_lattice_ordinates_params {
     TYN_SKY_SEEN(X##_OPTIONAL, LATTICE_ORDINATES), \
     X(LATTICE_ORDINATES, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
     X(LATTICE_ORDINATES, SUNLIGHT, sunlight, OPTIONAL, IMAGE_3D, "`source` of lattice_source, which is added to"), \
-    X(LATTICE_ORDINATES, SOURCE, source, OUT, IMAGE_3D, \
-        "unscattered fluence and flux of suns and ordinates, W/m^2; channels stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(LATTICE_ORDINATES, EVEN, even, OUT, IMAGE_3D, \
-        "what of `source` is the sky's mean; exists with `sky_seen`", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_ORDINATES, SOURCE, source, OUT, RGBA_3D, \
+        "unscattered fluence and flux of suns and ordinates, W/m^2; channels stacked along z"), \
+    X(LATTICE_ORDINATES, EVEN, even, OUT, RGBA_3D, "what of `source` is the sky's mean; exists with `sky_seen`"), \
     X(LATTICE_ORDINATES, GUESS, guess, OUT, BUFFER, \
         "vec4[channel][cell]: what of the mean would have scattered if nothing absorbed it: where the solve may start"), \
     X(LATTICE_ORDINATES, MEAN_PSI, mean_psi, SCRATCH, BUFFER, \
         "float[direction][channel][cell]: the sky's mean along the lattice's lines")
 // clang-format on
-enum { LATTICE_ORDINATES_PORTS(TYN_PORT_ENUM), LATTICE_ORDINATES_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_ordinates;
+TYN_PASS(LATTICE_ORDINATES, lattice_ordinates);

@@ -14,8 +14,7 @@
         "what light puts in now over what it did then; elsewhere the environment as if unhindered"), \
     X(LATTICE_RECALL, POWER, power, OUT, BUFFER, "what light puts into the cells")
 // clang-format on
-enum { LATTICE_RECALL_PORTS(TYN_PORT_ENUM), LATTICE_RECALL_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_recall;
+TYN_PASS(LATTICE_RECALL, lattice_recall);
 
 // Bytes that hold any lattice of so many cells along its longest side: the same for a medium whose
 // box changes from frame to frame.

@@ -19,15 +19,12 @@ typedef struct tyn_lattice_source_params {
     TYN_BEAMS(X, LATTICE_SOURCE), \
     TYN_WALLS(X##_OPTIONAL, LATTICE_SOURCE), \
     TYN_SHADOWS(X##_OPTIONAL, LATTICE_SOURCE), \
-    X(LATTICE_SOURCE, SOURCE, source, OUT, IMAGE_3D, \
-        "unscattered fluence and flux of the suns, W/m^2; channels stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_SOURCE, SOURCE, source, OUT, RGBA_3D, \
+        "unscattered fluence and flux of the suns, W/m^2; channels stacked along z"), \
     X(LATTICE_SOURCE, POWER, power, OUT, BUFFER, \
         "struct lattice_power per sun and channel: per sun the power that enters and that its beam loses, for" \
         " balance"), \
-    X(LATTICE_SOURCE, SUNLIT, sunlit, SCRATCH, IMAGE_3D, \
-        "transmittance to each sun; a = how much of the cell sees it; suns stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(LATTICE_SOURCE, SUNLIT, sunlit, SCRATCH, RGBA_3D, \
+        "transmittance to each sun; a = how much of the cell sees it; suns stacked along z")
 // clang-format on
-enum { LATTICE_SOURCE_PORTS(TYN_PORT_ENUM), LATTICE_SOURCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lattice_source;
+TYN_PASS(LATTICE_SOURCE, lattice_source);

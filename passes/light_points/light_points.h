@@ -11,6 +11,4 @@ typedef struct tyn_light_points_params {
     X(LIGHT_POINTS, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(LIGHT_POINTS, POINTS, points, OUT, BUFFER, "vec3[], m, x fastest")
 // clang-format on
-enum { LIGHT_POINTS_PORTS(TYN_PORT_ENUM), LIGHT_POINTS_NUM_PORTS };
-
-extern const tyn_pass_desc tyn_pass_light_points;
+TYN_PASS(LIGHT_POINTS, light_points);

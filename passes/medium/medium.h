@@ -26,11 +26,9 @@ typedef struct tyn_medium_params {
     X(MEDIUM, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(MEDIUM, DENSITY, density, OUT, IMAGE_3D, \
         "mean density per voxel; or sigma_s, 1/m, a = mean of the channels", .format = VK_FORMAT_R32_SFLOAT), \
-    X(MEDIUM, SIGMA_A, sigma_a, OUT, IMAGE_3D, \
-        "absorption, 1/m; a = mean of the channels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(MEDIUM, G, g, OUT, IMAGE_3D, \
-        "mean cosine, weighted with sigma_s; a = over the channels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(MEDIUM, EMISSION, emission, OUT, IMAGE_3D, "emission, W/(m^3 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(MEDIUM, SIGMA_A, sigma_a, OUT, RGBA_3D, "absorption, 1/m; a = mean of the channels"), \
+    X(MEDIUM, G, g, OUT, RGBA_3D, "mean cosine, weighted with sigma_s; a = over the channels"), \
+    X(MEDIUM, EMISSION, emission, OUT, RGBA_3D, "emission, W/(m^3 sr)"), \
     X(MEDIUM, BRICKS, bricks, OUT, IMAGE_3D, \
         "least and largest value over the brick: texture values (DENSITY), sigma_t of the largest channel in " \
         "1/m (COEFFICIENTS). Holds for the trilinear textures and for the exact shapes", \
@@ -41,5 +39,4 @@ typedef struct tyn_medium_params {
     X(MEDIUM, DISTANCE_SCRATCH, distance_scratch, SCRATCH, IMAGE_3D, \
         "distance over two axes", .format = VK_FORMAT_R32_SFLOAT)
 // clang-format on
-enum { MEDIUM_PORTS(TYN_PORT_ENUM), MEDIUM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_medium;
+TYN_PASS(MEDIUM, medium);

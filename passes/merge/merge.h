@@ -31,12 +31,11 @@ typedef struct tyn_merge_params {
     TYN_SHADOWS(X##_OPTIONAL, MERGE), \
     X(MERGE, PHASES, phases, OPTIONAL, BUFFER, "tables of phase functions"), \
     X(MERGE, VPL_LIGHT, vpl_light, OPTIONAL, IMAGE_3D, "of lattice_lamps"), \
-    X(MERGE, INSCATTER, inscatter, OUT, IMAGE_3D, \
+    X(MERGE, INSCATTER, inscatter, OUT, RGBA_3D, \
         "(one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi) + sum over ordinates of E " \
         "e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v the direction from the cell to the " \
-        "eye, k of tms.glsl; sample at lattice_inscatter_uvw", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "eye, k of tms.glsl; sample at lattice_inscatter_uvw"), \
     X(MERGE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were clamped or not finite"), \
     X(MERGE, FIELD, field, SCRATCH, BUFFER, "what each cell scatters towards the eye, before the clamp at 0")
 // clang-format on
-enum { MERGE_PORTS(TYN_PORT_ENUM), MERGE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_merge;
+TYN_PASS(MERGE, merge);

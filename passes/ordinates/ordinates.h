@@ -41,5 +41,4 @@ typedef struct tyn_ordinates_params {
     X(ORDINATES, PIECES, pieces, SCRATCH, BUFFER, \
         "struct ordinates_piece[TYN_ORDINATES_MAX]: what comes from them before folding")
 // clang-format on
-enum { ORDINATES_PORTS(TYN_PORT_ENUM), ORDINATES_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_ordinates;
+TYN_PASS(ORDINATES, ordinates);

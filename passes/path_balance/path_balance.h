@@ -15,8 +15,7 @@
     X(PATH_BALANCE, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread"), \
     X(PATH_BALANCE, AREAS, areas, OPTIONAL, BUFFER, "struct surface_table and cells, optional")
 // clang-format on
-enum { PATH_BALANCE_PORTS(TYN_PORT_ENUM), PATH_BALANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_path_balance;
+TYN_PASS(PATH_BALANCE, path_balance);
 
 // Bytes of its history.
 uint64_t tyn_path_balance_state_size(void);

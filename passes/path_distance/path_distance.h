@@ -15,5 +15,4 @@ typedef struct tyn_path_distance_params {
     X(PATH_DISTANCE, DISTANCES, distances, OUT, IMAGE_2D, \
         "along the ray to the first surface, m; 0: none", .format = VK_FORMAT_R32_SFLOAT)
 // clang-format on
-enum { PATH_DISTANCE_PORTS(TYN_PORT_ENUM), PATH_DISTANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_path_distance;
+TYN_PASS(PATH_DISTANCE, path_distance);

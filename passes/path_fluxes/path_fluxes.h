@@ -13,8 +13,7 @@
         "struct counters_block: collisions, cut paths, non-finite paths"), \
     X(PATH_FLUXES, PARTIALS, partials, SCRATCH, BUFFER, "mean of each thread's paths")
 // clang-format on
-enum { PATH_FLUXES_PORTS(TYN_PORT_ENUM), PATH_FLUXES_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_path_fluxes;
+TYN_PASS(PATH_FLUXES, path_fluxes);
 
 // Bytes of its history.
 uint64_t tyn_path_fluxes_state_size(void);

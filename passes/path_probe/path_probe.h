@@ -15,8 +15,7 @@
         "struct counters_block: collisions, cut paths, non-finite samples"), \
     X(PATH_PROBE, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread")
 // clang-format on
-enum { PATH_PROBE_PORTS(TYN_PORT_ENUM), PATH_PROBE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_path_probe;
+TYN_PASS(PATH_PROBE, path_probe);
 
 // Bytes of its history.
 uint64_t tyn_path_probe_state_size(uint32_t num_points);

@@ -36,5 +36,4 @@ typedef struct tyn_probe_params {
     X(PROBE, RESULTS, results, OUT, BUFFER, "tyn_probe_result[], W/m^2"), \
     X(PROBE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: channels of points that were not finite")
 // clang-format on
-enum { PROBE_PORTS(TYN_PORT_ENUM), PROBE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_probe;
+TYN_PASS(PROBE, probe);

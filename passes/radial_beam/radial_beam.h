@@ -26,15 +26,12 @@ typedef struct tyn_radial_beam_params {
     X(RADIAL_BEAM, RADIAL_COLUMN, radial_column, OUT, IMAGE_3D, \
         "mean density (or sigma_s) from a light, or from where its ray enters, to a node", \
         .format = VK_FORMAT_R32_SFLOAT), \
-    X(RADIAL_BEAM, RADIAL_TAU_A, radial_tau_a, OUT, IMAGE_3D, \
-        "mean sigma_a", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RADIAL_BEAM, RADIAL_TAU_P, radial_tau_p, OUT, IMAGE_3D, \
-        "mean sigma_s outside the forward peak", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RADIAL_BEAM, RADIAL_TAU_A, radial_tau_a, OUT, RGBA_3D, "mean sigma_a"), \
+    X(RADIAL_BEAM, RADIAL_TAU_P, radial_tau_p, OUT, RGBA_3D, "mean sigma_s outside the forward peak"), \
     X(RADIAL_BEAM, COUNTERS, counters, OUT, BUFFER, "struct counters_block: nodes that were not finite"), \
     X(RADIAL_BEAM, LAMPS, lamps, SCRATCH, BUFFER, "struct light_block[]")
 // clang-format on
-enum { RADIAL_BEAM_PORTS(TYN_PORT_ENUM), RADIAL_BEAM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_radial_beam;
+TYN_PASS(RADIAL_BEAM, radial_beam);
 
 // Fills what the method sets: lamps sorted by their intensity, the first `fine` of them in fine grids. Their colours (W/sr), in
 // the same order, go into `colors`, which has room for TYN_RADIAL_LAMPS_MAX.

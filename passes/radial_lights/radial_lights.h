@@ -19,5 +19,4 @@ typedef struct tyn_radial_lights_params {
     X(RADIAL_LIGHTS, RADIALS, radials, OUT, BUFFER, "struct radial_block"), \
     X(RADIAL_LIGHTS, COLORS, colors, SCRATCH, BUFFER, "vec4[]: of the lamps, W/sr")
 // clang-format on
-enum { RADIAL_LIGHTS_PORTS(TYN_PORT_ENUM), RADIAL_LIGHTS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_radial_lights;
+TYN_PASS(RADIAL_LIGHTS, radial_lights);

@@ -89,22 +89,16 @@ enum {
         .format = VK_FORMAT_R32G32_UINT), \
     X(RAYMARCH, DISTANCES, distances, OPTIONAL, IMAGE_2D, \
         "distance of the first surface along the ray, m, or 0: none; rays end there; n x n samples a pixel"), \
-    X(RAYMARCH, RADIANCE, radiance, OUT, IMAGE_2D, \
-        "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, TRANSMITTANCE, transmittance, OUT, IMAGE_2D, \
-        "transmittance to the first surface or out of the scene", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, DEPTH, depth, OUT, IMAGE_2D, \
-        "distance to the first surface, and to where the mean transmittance is 1/2, m; infinity if there is " \
-        "none", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, SINGLE, single, OUT, IMAGE_2D, \
-        "light that has scattered once", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, MULTIPLE, multiple, OUT, IMAGE_2D, \
-        "light that has scattered more often, or was emitted", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, RADIANCE, radiance, OUT, RGBA_2D, \
+        "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen"), \
+    X(RAYMARCH, TRANSMITTANCE, transmittance, OUT, RGBA_2D, \
+        "transmittance to the first surface or out of the scene"), \
+    X(RAYMARCH, DEPTH, depth, OUT, RGBA_2D, \
+        "distance to the first surface, and to where the mean transmittance is 1/2, m; infinity if there is none"), \
+    X(RAYMARCH, SINGLE, single, OUT, RGBA_2D, "light that has scattered once"), \
+    X(RAYMARCH, MULTIPLE, multiple, OUT, RGBA_2D, "light that has scattered more often, or was emitted"), \
     X(RAYMARCH, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
-    X(RAYMARCH, SPARSE, sparse, SCRATCH, IMAGE_2D, \
-        "of one pixel in 2x2: radiance, transmittance and e^-tau'", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, SPARSE, sparse, SCRATCH, RGBA_2D, "of one pixel in 2x2: radiance, transmittance and e^-tau'"), \
     X(RAYMARCH, REST, rest, SCRATCH, BUFFER, "pixels that have rays of their own")
 // clang-format on
-enum { RAYMARCH_PORTS(TYN_PORT_ENUM), RAYMARCH_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_raymarch;
+TYN_PASS(RAYMARCH, raymarch);

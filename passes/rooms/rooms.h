@@ -17,5 +17,4 @@ typedef struct tyn_rooms_params {
     X(ROOMS, ROOMS, rooms, OUT, BUFFER, "rooms.h: of what is outside, of each cell, of each VPL"), \
     X(ROOMS, FOREST, forest, SCRATCH, BUFFER, "rooms_forest.glsl")
 // clang-format on
-enum { ROOMS_PORTS(TYN_PORT_ENUM), ROOMS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_rooms;
+TYN_PASS(ROOMS, rooms);

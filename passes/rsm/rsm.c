@@ -151,8 +151,7 @@ const tyn_pass_desc tyn_pass_rsm = {
     .summary = "what surfaces reflect of each light, and of the sky",
     .serves = "surfaces that suns, lamps or the sky shine on, with virtual point lights",
     TYN_PASS_TABLES(tyn_rsm_params),
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = RSM_PORT_RSM_FLUX,
     .debug_meaning = "power reflected in the texels of all lights' maps, W",
 };

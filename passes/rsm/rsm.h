@@ -51,5 +51,4 @@ void tyn_rsm_add_sky(tyn_rsm_params *params, uint32_t fan, const uint32_t cells[
     X(RSM, AREA_BLOCKS, area_blocks, SCRATCH, BUFFER, "rsm_sky_args.h: float[]"), \
     X(RSM, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)
 // clang-format on
-enum { RSM_PORTS(TYN_PORT_ENUM), RSM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_rsm;
+TYN_PASS(RSM, rsm);

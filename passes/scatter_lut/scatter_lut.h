@@ -29,5 +29,4 @@ typedef struct tyn_scatter_lut_params {
         "Legendre moments of the phase function outside and inside the lobe"), \
     X(SCATTER_LUT, CONES, cones, SCRATCH, BUFFER, "Legendre moments c_l of the cones")
 // clang-format on
-enum { SCATTER_LUT_PORTS(TYN_PORT_ENUM), SCATTER_LUT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_scatter_lut;
+TYN_PASS(SCATTER_LUT, scatter_lut);

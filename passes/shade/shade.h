@@ -62,12 +62,9 @@ typedef struct tyn_shade_params {
         .format = VK_FORMAT_R32G32_UINT), \
     X(SHADE, COUNTERS, counters, OUT, BUFFER, \
         "struct counters_block: places where the lattice's light on a surface was clamped"), \
-    X(SHADE, FORWARD, forward, SCRATCH, IMAGE_3D, \
-        "shade_forward.comp: exists with a lattice, suns and shadows", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(SHADE, FACES, faces, SCRATCH, IMAGE_2D, \
-        "shade_faces.h: light that leaves the medium's box", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(SHADE, SIGHT, sight, SCRATCH, IMAGE_3D, \
-        "from where faces of the medium's box are seen", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHADE, FORWARD, forward, SCRATCH, RGBA_3D, "shade_forward.comp: exists with a lattice, suns and shadows"), \
+    X(SHADE, FACES, faces, SCRATCH, RGBA_2D, "shade_faces.h: light that leaves the medium's box"), \
+    X(SHADE, SIGHT, sight, SCRATCH, RGBA_3D, "from where faces of the medium's box are seen"), \
     X(SHADE, PART, part, SCRATCH, IMAGE_2D, \
         "a block's part of the VPLs' light, then all", .format = VK_FORMAT_R32G32B32A32_UINT), \
     X(SHADE, PART_ROWS, part_rows, SCRATCH, IMAGE_2D, \
@@ -75,5 +72,4 @@ typedef struct tyn_shade_params {
     X(SHADE, ALONE_COUNT, alone_count, SCRATCH, BUFFER, "shade_alone.glsl: struct gbuffer_edge_count"), \
     X(SHADE, ALONE, alone, SCRATCH, BUFFER, "pixels with pieces that have smooth light of their own")
 // clang-format on
-enum { SHADE_PORTS(TYN_PORT_ENUM), SHADE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_shade;
+TYN_PASS(SHADE, shade);

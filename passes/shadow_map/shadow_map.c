@@ -63,8 +63,7 @@ const tyn_pass_desc tyn_pass_shadow_map = {
     .summary = "what each light sees of the surfaces",
     .serves = "surfaces that suns or lamps shine on",
     TYN_PASS_TABLES(tyn_shadow_map_params),
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = SHADOW_MAP_PORT_SHADOW_ATLAS,
     .debug_meaning = "the maps of all lights: 1 near, 0 far",
 };

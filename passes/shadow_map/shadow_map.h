@@ -42,5 +42,4 @@ void tyn_shadow_map_plan(tyn_shadow_map_params *params, const struct light_block
         "reversed depth of what each light sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
     X(SHADOW_MAP, SHADOWS, shadows, OUT, BUFFER, "struct shadow_light[]: where each light's maps are")
 // clang-format on
-enum { SHADOW_MAP_PORTS(TYN_PORT_ENUM), SHADOW_MAP_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_shadow_map;
+TYN_PASS(SHADOW_MAP, shadow_map);

@@ -20,5 +20,4 @@ typedef struct tyn_sky_seen_params {
     TYN_WALLS(X##_OPTIONAL, SKY_SEEN), \
     X(SKY_SEEN, SKY_SEEN, sky_seen, OUT, BUFFER, "sky_seen.glsl: shares of the ordinates that cells see")
 // clang-format on
-enum { SKY_SEEN_PORTS(TYN_PORT_ENUM), SKY_SEEN_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_sky_seen;
+TYN_PASS(SKY_SEEN, sky_seen);

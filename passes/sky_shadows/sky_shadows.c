@@ -97,8 +97,7 @@ const tyn_pass_desc tyn_pass_sky_shadows = {
     .summary = "what the directions of the sky see of the surfaces",
     .serves = "surfaces under an environment, or under more suns than have beams",
     TYN_PASS_TABLES(tyn_sky_shadows_params),
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = SKY_SHADOWS_PORT_SKY_ATLAS,
     .debug_meaning = "the maps of all directions: 1 near, 0 far",
 };

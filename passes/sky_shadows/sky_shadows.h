@@ -27,5 +27,4 @@ typedef struct tyn_sky_shadows_params {
         "reversed depth of what each map sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
     X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces")
 // clang-format on
-enum { SKY_SHADOWS_PORTS(TYN_PORT_ENUM), SKY_SHADOWS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_sky_shadows;
+TYN_PASS(SKY_SHADOWS, sky_shadows);

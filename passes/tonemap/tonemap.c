@@ -39,8 +39,7 @@ const tyn_pass_desc tyn_pass_tonemap = {
     .serves = "pictures of 8 bits",
     TYN_PASS_TABLES(tyn_tonemap_params),
     .of_pixels = true,
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = TONEMAP_PORT_DISPLAY,
     .debug_meaning = "the picture as shown",
 };

@@ -17,6 +17,4 @@ enum { TONEMAP_CURVE_FILMIC = 0, TONEMAP_CURVE_LINEAR, TONEMAP_NUM_CURVES };
     X(TONEMAP, DISPLAY, display, OUT, IMAGE_2D, \
         "sRGB-encoded picture, straight alpha", .format = VK_FORMAT_R8G8B8A8_UNORM)
 // clang-format on
-enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };
-
-extern const tyn_pass_desc tyn_pass_tonemap;
+TYN_PASS(TONEMAP, tonemap);

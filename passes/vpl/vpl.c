@@ -195,8 +195,7 @@ const tyn_pass_desc tyn_pass_vpl = {
     .summary = "what surfaces reflect first and emit, as virtual point lights (Keller 1997)",
     .serves = "surfaces that emit or are shone on, with virtual point lights (vpl.count)",
     TYN_PASS_TABLES(tyn_vpl_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(VPL_DISTANCES),
     .debug_meaning = "what each light sees: distances of surfaces",
 };

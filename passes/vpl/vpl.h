@@ -31,18 +31,14 @@ typedef struct tyn_vpl_params {
     X(VPL, VPLS, vpls, OUT, BUFFER, "struct radial_vpls"), \
     X(VPL, VPL_DISTANCES, vpl_distances, OUT, IMAGE_2D, \
         "of the first surface in every direction of a VPL, m", .format = VK_FORMAT_R32_SFLOAT), \
-    X(VPL, VPL_PLANES, vpl_planes, OUT, IMAGE_2D, \
-        "of these surfaces: normal towards the VPL (M), distance of it, m", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(VPL, VPL_PLANES, vpl_planes, OUT, RGBA_2D, "of these surfaces: normal towards the VPL (M), distance of it, m"), \
     X(VPL, PLAN, plan, SCRATCH, BUFFER, "struct vpl_plan"), \
     X(VPL, WEIGHTS, weights, SCRATCH, BUFFER, "float[]: of the elements"), \
     X(VPL, BLOCKS, blocks, SCRATCH, BUFFER, "float[]: sums of blocks of elements, then what is before each"), \
     X(VPL, STRATA, strata, SCRATCH, BUFFER, "struct vpl_stratum[]"), \
     X(VPL, BINS, bins, SCRATCH, BUFFER, "struct vpl_bins"), \
-    X(VPL, BIN_FLUX, bin_flux, SCRATCH, IMAGE_2D, \
-        "power of bins, W (rsm_args.h)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(VPL, BIN_POSITION, bin_position, SCRATCH, IMAGE_2D, "where (M, m)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(VPL, BIN_NORMAL, bin_normal, SCRATCH, IMAGE_2D, "normal (M)", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(VPL, BIN_FLUX, bin_flux, SCRATCH, RGBA_2D, "power of bins, W (rsm_args.h)"), \
+    X(VPL, BIN_POSITION, bin_position, SCRATCH, RGBA_2D, "where (M, m)"), \
+    X(VPL, BIN_NORMAL, bin_normal, SCRATCH, RGBA_2D, "normal (M)")
 // clang-format on
-enum { VPL_PORTS(TYN_PORT_ENUM), VPL_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_vpl;
+TYN_PASS(VPL, vpl);

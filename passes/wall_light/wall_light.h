@@ -34,5 +34,4 @@ typedef struct tyn_wall_light_params {
     X(WALL_LIGHT, FIRST, first, SCRATCH, BUFFER, "uint[1 + cells]: by room, the first VPL that shines there"), \
     X(WALL_LIGHT, PARTS, parts, SCRATCH, BUFFER, "vec3[]: sums of arrived by room and part of the lattice")
 // clang-format on
-enum { WALL_LIGHT_PORTS(TYN_PORT_ENUM), WALL_LIGHT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_wall_light;
+TYN_PASS(WALL_LIGHT, wall_light);

@@ -21,8 +21,7 @@ typedef struct tyn_walls_params {
         "share of the link in the others"), \
     X(WALLS, NEAREST, nearest, SCRATCH, BUFFER, "nearest triangle in the cell, per main direction of its normal")
 // clang-format on
-enum { WALLS_PORTS(TYN_PORT_ENUM), WALLS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_walls;
+TYN_PASS(WALLS, walls);
 
 // Triangles that the pass can tell apart.
 enum { TYN_WALLS_MAX_TRIANGLES = 1 << 24 };

@@ -44,8 +44,7 @@ const tyn_pass_desc tyn_pass_walls_beyond = {
     .summary = "surfaces around the lattice, as walls of its outermost cells",
     .serves = "surfaces that stand close to media, but outside",
     TYN_PASS_TABLES(tyn_walls_beyond_params),
-    .params = params_table,
-    .num_params = TYN_COUNT(params_table),
+    TYN_SETTINGS(params_table),
     .debug_port = WALLS_BEYOND_PORT_WALL_CELLS,
     .debug_meaning = "albedo of the walls per cell",
 };

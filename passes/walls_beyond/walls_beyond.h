@@ -24,5 +24,4 @@ typedef struct tyn_walls_beyond_params {
     X(WALLS_BEYOND, INNER_CELLS, inner_cells, OPTIONAL, BUFFER, "wall_cells"), \
     TYN_WALLS(X##_OUT, WALLS_BEYOND)
 // clang-format on
-enum { WALLS_BEYOND_PORTS(TYN_PORT_ENUM), WALLS_BEYOND_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_walls_beyond;
+TYN_PASS(WALLS_BEYOND, walls_beyond);

@@ -62,12 +62,9 @@
 
 // What the lights shine on (rsm_args.h).
 #define TYN_RSM(X, P) \
-    X(P, RSM_FLUX, rsm_flux, IN, IMAGE_2D, \
-        "power that a texel reflects, W", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(P, RSM_POSITION, rsm_position, IN, IMAGE_2D, \
-        "where (M, m); area of it, m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(P, RSM_NORMAL, rsm_normal, IN, IMAGE_2D, \
-        "of the surface (M), on the light's side", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(P, RSM_FLUX, rsm_flux, IN, RGBA_2D, "power that a texel reflects, W"), \
+    X(P, RSM_POSITION, rsm_position, IN, RGBA_2D, "where (M, m); area of it, m^2"), \
+    X(P, RSM_NORMAL, rsm_normal, IN, RGBA_2D, "of the surface (M), on the light's side")
 
 // What the camera sees of the surfaces (gbuffer.glsl).
 #define TYN_GBUFFER(X, P) \

@@ -133,15 +133,20 @@ typedef struct tyn_kernel {
 // In C, not C++: the ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its
 // enum and its table:
 //   #define TONEMAP_PORTS(X) X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "W/(m^2 sr)"), X(...)
-//   enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };                TONEMAP_PORT_RADIANCE, ...
+//   TYN_PASS(TONEMAP, tonemap);                                              TONEMAP_PORT_RADIANCE, ..., tyn_pass_tonemap
 //   static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
-// direction: IN, OPTIONAL (IN that need not be connected), OUT, INOUT, SCRATCH. dim: BUFFER, IMAGE_2D, IMAGE_3D. Behind
-// the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
+// direction: IN, OPTIONAL (IN that need not be connected), OUT, INOUT, SCRATCH. dim: BUFFER, IMAGE_2D, IMAGE_3D, and images of
+// four floats, RGBA_2D and RGBA_3D. Behind the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
 //
 // A bundle is a list of ports that go together from the passes that make them to those that read them,
 // TYN_BEAMS(X, PREFIX); it is an element of lists, with X##_OPTIONAL where all of it may be absent and X##_OUT where it is
 // made. A struct of refs is
 //   struct { tyn_ref TYN_BEAMS(TYN_PORT_NAME, ); }.
+#define TYN_PASS(P, name)                                                                          \
+    enum { P##_PORTS(TYN_PORT_ENUM), P##_NUM_PORTS };                                              \
+    extern const tyn_pass_desc tyn_pass_##name
+#define TYN_RGBA_2D TYN_IMAGE_2D, .format = VK_FORMAT_R32G32B32A32_SFLOAT
+#define TYN_RGBA_3D TYN_IMAGE_3D, .format = VK_FORMAT_R32G32B32A32_SFLOAT
 #define TYN_PORT_ENUM(P, PORT, ...) P##_PORT_##PORT
 #define TYN_PORT_ENUM_OPTIONAL(P, PORT, ...) P##_PORT_##PORT
 #define TYN_PORT_ENUM_OUT(P, PORT, ...) P##_PORT_##PORT
@@ -250,6 +255,8 @@ typedef struct tyn_pass_desc {
     .num_ports = TYN_COUNT(ports) + 0 * sizeof(char[TYN_COUNT(ports) <= TYN_MAX_PORTS ? 1 : -1]),  \
     .kernels = kernels, .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type),     \
     .declare = declare, .record = record
+
+#define TYN_SETTINGS(table) .params = table, .num_params = TYN_COUNT(table)
 
 // Fills params with zeros, then the defaults of the table.
 TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);

@@ -59,21 +59,18 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
         .format = VK_FORMAT_R32G32_UINT), \
     X(CONSTELLATION, DISTANCES, distances, OPTIONAL, IMAGE_2D, \
         "distance of the first surface along the ray, m, or 0: none; rays end there; n x n samples a pixel"), \
-    X(CONSTELLATION, RADIANCE, radiance, OUT, IMAGE_2D, \
-        "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(CONSTELLATION, TRANSMITTANCE, transmittance, OUT, IMAGE_2D, \
-        "transmittance to the first surface or out of the scene", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(CONSTELLATION, DEPTH, depth, OUT, IMAGE_2D, \
+    X(CONSTELLATION, RADIANCE, radiance, OUT, RGBA_2D, \
+        "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen"), \
+    X(CONSTELLATION, TRANSMITTANCE, transmittance, OUT, RGBA_2D, \
+        "transmittance to the first surface or out of the scene"), \
+    X(CONSTELLATION, DEPTH, depth, OUT, RGBA_2D, \
         "distance to the first surface, and to where the mean transmittance is 1/2, m; infinity if there is " \
-        "none", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "none"), \
     X(CONSTELLATION, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
-    X(CONSTELLATION, STATE_LIGHT, state_light, SCRATCH, IMAGE_2D, \
-        "between dispatches: radiance, next slice", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(CONSTELLATION, STATE_THROUGH, state_through, SCRATCH, IMAGE_2D, \
-        "between dispatches: transmittance, where the ray is, m", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(CONSTELLATION, STATE_UNCOVERED, state_uncovered, SCRATCH, IMAGE_2D, \
-        "between dispatches: the share of the background", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(CONSTELLATION, STATE_LIGHT, state_light, SCRATCH, RGBA_2D, "between dispatches: radiance, next slice"), \
+    X(CONSTELLATION, STATE_THROUGH, state_through, SCRATCH, RGBA_2D, \
+        "between dispatches: transmittance, where the ray is, m"), \
+    X(CONSTELLATION, STATE_UNCOVERED, state_uncovered, SCRATCH, RGBA_2D, \
+        "between dispatches: the share of the background")
 // clang-format on
-enum { CONSTELLATION_PORTS(TYN_PORT_ENUM), CONSTELLATION_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_constellation;
+TYN_PASS(CONSTELLATION, constellation);

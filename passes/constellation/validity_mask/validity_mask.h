@@ -24,5 +24,4 @@ typedef struct tyn_validity_mask_params {
         "direction of the ray (M); iFirst: the farthest slice that is not empty, counted from the nearest one in the " \
         "box, or -1", .format = VK_FORMAT_R16G16B16A16_SFLOAT)
 // clang-format on
-enum { VALIDITY_MASK_PORTS(TYN_PORT_ENUM), VALIDITY_MASK_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_validity_mask;
+TYN_PASS(VALIDITY_MASK, validity_mask);

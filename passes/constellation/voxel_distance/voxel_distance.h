@@ -33,5 +33,4 @@ typedef struct tyn_voxel_distance_params {
     X(VOXEL_DISTANCE, ENVELOPE, envelope, SCRATCH, BUFFER, \
         "uint[voxel]: the voxels of a column whose parabolas are its lower envelope")
 // clang-format on
-enum { VOXEL_DISTANCE_PORTS(TYN_PORT_ENUM), VOXEL_DISTANCE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_voxel_distance;
+TYN_PASS(VOXEL_DISTANCE, voxel_distance);

@@ -55,14 +55,12 @@ uint32_t tyn_gradient_points(const tyn_gradient_params *params);
     TYN_WALLS(X##_OPTIONAL, GRADIENT), \
     X(GRADIENT, BRICKS, bricks, OPTIONAL, IMAGE_3D, "of medium: where there is none no field is made"), \
     X(GRADIENT, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
-    X(GRADIENT, INSCATTER, inscatter, OUT, IMAGE_3D, \
-        "cells + 2: light that is scattered towards the eye, per sigma_s (with `scattered`: per sigma_s'), W/(m^2 sr)", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(GRADIENT, INSCATTER, inscatter, OUT, RGBA_3D, \
+        "cells + 2: light that is scattered towards the eye, per sigma_s (with `scattered`: per sigma_s'), W/(m^2 sr)"), \
     X(GRADIENT, COUNTERS, counters, OUT, BUFFER, "struct counters_block: samples, points followed"), \
     X(GRADIENT, SAMPLES, samples, OUT, BUFFER, "struct gradient_sample[point], level after level"), \
     X(GRADIENT, STATES, states, OUT, BUFFER, "uint[point]: GRADIENT_IS_*"), \
     X(GRADIENT, HEADS, heads, SCRATCH, BUFFER, "struct gradient_head"), \
     X(GRADIENT, ENTRIES, entries, SCRATCH, BUFFER, "uint[point]: of each level, points that are sampled, in any order")
 // clang-format on
-enum { GRADIENT_PORTS(TYN_PORT_ENUM), GRADIENT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_gradient;
+TYN_PASS(GRADIENT, gradient);

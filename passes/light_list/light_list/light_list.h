@@ -21,5 +21,4 @@ typedef struct tyn_light_list_params {
     X(LIGHT_LIST, LIGHT_LIST, light_list, OUT, BUFFER, "struct light_list_block"), \
     X(LIGHT_LIST, LIGHT_SHADES, light_shades, OUT, BUFFER, "struct light_shades_block: with directions")
 // clang-format on
-enum { LIGHT_LIST_PORTS(TYN_PORT_ENUM), LIGHT_LIST_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_light_list;
+TYN_PASS(LIGHT_LIST, light_list);

@@ -24,5 +24,4 @@ typedef struct tyn_median_cut_params {
     X(MEDIAN_CUT, SUMS, sums, OPTIONAL, BUFFER, "of env_importance, with no suns taken out: struct sky_sum[]"), \
     X(MEDIAN_CUT, CONSTELLATION, constellation, OUT, BUFFER, "struct constellation_block")
 // clang-format on
-enum { MEDIAN_CUT_PORTS(TYN_PORT_ENUM), MEDIAN_CUT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_median_cut;
+TYN_PASS(MEDIAN_CUT, median_cut);

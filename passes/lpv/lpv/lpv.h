@@ -44,9 +44,9 @@ typedef struct tyn_lpv_params {
     X(LPV, BLOCKING, blocking, OPTIONAL, BUFFER, "of lpv_blockers"), \
     X(LPV, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
         "struct env_block: its mean without suns enters at the box"), \
-    X(LPV, MOMENTS, moments, OUT, IMAGE_3D, \
+    X(LPV, MOMENTS, moments, OUT, RGBA_3D, \
         "stacked: fluence phi and net flux (x, y, z) of the light that has scattered, was reflected or emitted, or came " \
-        "from the environment, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "from the environment, W/m^2"), \
     X(LPV, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(LPV, LEAKS, leaks, OUT, BUFFER, "float[channel][cell], for a balance: net power from a cell out of the box, W"), \
     X(LPV, WALL_POWER, wall_power, OUT, BUFFER, \
@@ -55,5 +55,4 @@ typedef struct tyn_lpv_params {
     X(LPV, SENT_1, sent_1, SCRATCH, BUFFER, "the same, of the next iteration"), \
     X(LPV, SUM, sum, SCRATCH, BUFFER, "vec4[channel][cell]: power and its first moment in all iterations, W")
 // clang-format on
-enum { LPV_PORTS(TYN_PORT_ENUM), LPV_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lpv;
+TYN_PASS(LPV, lpv);

@@ -71,8 +71,7 @@ const tyn_pass_desc tyn_pass_lpv_blockers = {
     .summary = "how much surfaces block light between cells, fuzzily",
     .serves = "surfaces in media, with lpv.blockers=fuzzy",
     TYN_PASS_TABLES(tyn_lpv_blockers_params),
-    .params = param_table,
-    .num_params = TYN_COUNT(param_table),
+    TYN_SETTINGS(param_table),
     .debug_port = LPV_BLOCKERS_PORT_BLOCKING,
     .debug_meaning = "blocked shares of the links, four a word",
 };

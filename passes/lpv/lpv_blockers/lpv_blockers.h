@@ -21,8 +21,7 @@ typedef struct tyn_lpv_blockers_params {
     X(LPV_BLOCKERS, POTENTIAL, potential, SCRATCH, BUFFER, \
         "ivec4[shifted cell]: its lobes, constant and linear, in units of dx^2 / 2^24")
 // clang-format on
-enum { LPV_BLOCKERS_PORTS(TYN_PORT_ENUM), LPV_BLOCKERS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lpv_blockers;
+TYN_PASS(LPV_BLOCKERS, lpv_blockers);
 
 enum { TYN_LPV_BLOCKERS_MAPS = 6 };
 // Where map `i` lies in its atlas of three by two, and its rows M -> clip; the area of its texels, m^2, is returned.

@@ -30,5 +30,4 @@ typedef struct tyn_lpv_reflect_params {
     X(LPV_REFLECT, PARTIALS, partials, SCRATCH, BUFFER, "float[]: power of blocks of texels, W"), \
     X(LPV_REFLECT, TILES, tiles, SCRATCH, BUFFER, "struct rsm_tile[]")
 // clang-format on
-enum { LPV_REFLECT_PORTS(TYN_PORT_ENUM), LPV_REFLECT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lpv_reflect;
+TYN_PASS(LPV_REFLECT, lpv_reflect);

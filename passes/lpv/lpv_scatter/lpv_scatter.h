@@ -39,5 +39,4 @@ void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *params, const float extent[3],
     X(LPV_SCATTER, COUNTERS, counters, OUT, BUFFER, "struct counters_block: samples that were bounded or not finite"), \
     X(LPV_SCATTER, RAYS, rays, SCRATCH, BUFFER, "struct lpv_scatter_bundle[]")
 // clang-format on
-enum { LPV_SCATTER_PORTS(TYN_PORT_ENUM), LPV_SCATTER_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_lpv_scatter;
+TYN_PASS(LPV_SCATTER, lpv_scatter);

@@ -37,8 +37,7 @@ const tyn_pass_desc tyn_pass_impostor = {
     .serves = "impostors (impostor.on)",
     TYN_PASS_TABLES(tyn_impostor_params),
     .of_pixels = true,
-    .params = param_table,
-    .num_params = TYN_COUNT(param_table),
+    TYN_SETTINGS(param_table),
     .debug_port = IMPOSTOR_PORT_RADIANCE,
     .debug_meaning = "radiance, exposed by its own mean",
 };

@@ -22,8 +22,7 @@ typedef struct tyn_impostor_params {
     X(IMPOSTOR, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "latitude-longitude map, W/(m^2 sr)"), \
     X(IMPOSTOR, MARCHED, marched, IN, IMAGE_2D, "of raymarch: radiance of the media alone"), \
     X(IMPOSTOR, LEFT, left, IN, IMAGE_2D, "of raymarch: transmittance"), \
-    X(IMPOSTOR, RADIANCE, radiance, OUT, IMAGE_2D, "as raymarch has it", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(IMPOSTOR, TRANSMITTANCE, transmittance, OUT, IMAGE_2D, "likewise", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(IMPOSTOR, RADIANCE, radiance, OUT, RGBA_2D, "as raymarch has it"), \
+    X(IMPOSTOR, TRANSMITTANCE, transmittance, OUT, RGBA_2D, "likewise")
 // clang-format on
-enum { IMPOSTOR_PORTS(TYN_PORT_ENUM), IMPOSTOR_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_impostor;
+TYN_PASS(IMPOSTOR, impostor);

@@ -14,5 +14,4 @@ typedef struct tyn_impostor_camera_params {
 #define IMPOSTOR_CAMERA_PORTS(X) \
     X(IMPOSTOR_CAMERA, TAKEN, taken, INOUT, BUFFER, "struct camera_block: of the last one, a history")
 // clang-format on
-enum { IMPOSTOR_CAMERA_PORTS(TYN_PORT_ENUM), IMPOSTOR_CAMERA_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_impostor_camera;
+TYN_PASS(IMPOSTOR_CAMERA, impostor_camera);

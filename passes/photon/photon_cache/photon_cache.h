@@ -20,9 +20,7 @@ typedef struct tyn_photon_cache_params {
     X(PHOTON_CACHE, FLUX, flux, IN, BUFFER, "of photon_trace"), \
     X(PHOTON_CACHE, SUM, sum, INOUT, BUFFER, "tyn_photon_sum_size bytes: a history"), \
     X(PHOTON_CACHE, LIGHT, light, OUT, BUFFER, "struct photon_light[lobe][cell]"), \
-    X(PHOTON_CACHE, MOMENTS, moments, OUT, IMAGE_3D, \
-        "fluence and net flux, W/m^2, channels stacked along z", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PHOTON_CACHE, MOMENTS, moments, OUT, RGBA_3D, "fluence and net flux, W/m^2, channels stacked along z"), \
     X(PHOTON_CACHE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were bounded")
 // clang-format on
-enum { PHOTON_CACHE_PORTS(TYN_PORT_ENUM), PHOTON_CACHE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_photon_cache;
+TYN_PASS(PHOTON_CACHE, photon_cache);

@@ -68,8 +68,7 @@ typedef struct tyn_photon_trace_params {
     X(PHOTON_TRACE, PLAN, plan, SCRATCH, BUFFER, "struct photon_trace_plan"), \
     X(PHOTON_TRACE, GROUPS, groups, SCRATCH, BUFFER, "workgroups of each dispatch")
 // clang-format on
-enum { PHOTON_TRACE_PORTS(TYN_PORT_ENUM), PHOTON_TRACE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_photon_trace;
+TYN_PASS(PHOTON_TRACE, photon_trace);
 
 // Bytes of its histories, and of that of photon_cache.
 uint64_t tyn_photon_ring_size(const tyn_photon_trace_params *params);

@@ -56,8 +56,7 @@ const tyn_pass_desc tyn_pass_photon_upsample = {
     .name = "photon_upsample",
     .summary = "the cache of photons at the places of finer cells",
     TYN_PASS_TABLES(tyn_photon_upsample_params),
-    .params = param_table,
-    .num_params = TYN_COUNT(param_table),
+    TYN_SETTINGS(param_table),
     .debug_port = PHOTON_UPSAMPLE_PORT_FLUENCE,
     .debug_meaning = "fluence of the first lobe",
 };

@@ -21,11 +21,8 @@ typedef struct tyn_photon_upsample_params {
     TYN_MEDIUM(X, PHOTON_UPSAMPLE), \
     X(PHOTON_UPSAMPLE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells: the medium in the cache's cells"), \
     X(PHOTON_UPSAMPLE, LIGHT, light, IN, BUFFER, "of photon_cache"), \
-    X(PHOTON_UPSAMPLE, FLUENCE, fluence, OUT, IMAGE_3D, \
-        "of each lobe, stacked along z: fluence, W/m^2, and the penetration depth, scatterings", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(PHOTON_UPSAMPLE, WAY, way, OUT, IMAGE_3D, \
-        "its net flux over its fluence", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(PHOTON_UPSAMPLE, FLUENCE, fluence, OUT, RGBA_3D, \
+        "of each lobe, stacked along z: fluence, W/m^2, and the penetration depth, scatterings"), \
+    X(PHOTON_UPSAMPLE, WAY, way, OUT, RGBA_3D, "its net flux over its fluence")
 // clang-format on
-enum { PHOTON_UPSAMPLE_PORTS(TYN_PORT_ENUM), PHOTON_UPSAMPLE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_photon_upsample;
+TYN_PASS(PHOTON_UPSAMPLE, photon_upsample);

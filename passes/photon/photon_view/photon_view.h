@@ -20,10 +20,8 @@ typedef struct tyn_photon_view_params {
     X(PHOTON_VIEW, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
     X(PHOTON_VIEW, FLUENCE, fluence, IN, IMAGE_3D, "of photon_upsample"), \
     X(PHOTON_VIEW, WAY, way, IN, IMAGE_3D, "of photon_upsample"), \
-    X(PHOTON_VIEW, INSCATTER, inscatter, OUT, IMAGE_3D, \
-        "dims + 2: light that is scattered towards the eye, per sigma_s, W/(m^2 sr)", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PHOTON_VIEW, INSCATTER, inscatter, OUT, RGBA_3D, \
+        "dims + 2: light that is scattered towards the eye, per sigma_s, W/(m^2 sr)"), \
     X(PHOTON_VIEW, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were not finite")
 // clang-format on
-enum { PHOTON_VIEW_PORTS(TYN_PORT_ENUM), PHOTON_VIEW_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_photon_view;
+TYN_PASS(PHOTON_VIEW, photon_view);

@@ -62,8 +62,7 @@ const tyn_pass_desc tyn_pass_merge_grids = {
     .name = "merge_grids",
     .summary = "light to the eye of all aligned grids, summed on the medium's axes",
     TYN_PASS_TABLES(tyn_merge_grids_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(MERGED),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

@@ -33,9 +33,8 @@ typedef struct tyn_merge_grids_params {
     X(MERGE_GRIDS, VPL_PLACES, vpl_places, OPTIONAL, BUFFER, "struct propagate_radial_place[]"), \
     X(MERGE_GRIDS, VPL_SEEN, vpl_seen, OPTIONAL, IMAGE_3D, "of propagate_radial: r^2 L_acc, 1/sr"), \
     X(MERGE_GRIDS, RESIDUUM, residuum, OPTIONAL, IMAGE_3D, "of residuum: light to the eye, W/(m^2 sr)"), \
-    X(MERGE_GRIDS, MERGED, merged, OUT, IMAGE_3D, \
+    X(MERGE_GRIDS, MERGED, merged, OUT, RGBA_3D, \
         "cubic cells that span the medium's box (lattice.glsl): rgb = light to the eye per unit of sigma_s, " \
-        "W/(m^2 sr); a = mean sigma_s of the cell and the channels, 1/m", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+        "W/(m^2 sr); a = mean sigma_s of the cell and the channels, 1/m")
 // clang-format on
-enum { MERGE_GRIDS_PORTS(TYN_PORT_ENUM), MERGE_GRIDS_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_merge_grids;
+TYN_PASS(MERGE_GRIDS, merge_grids);

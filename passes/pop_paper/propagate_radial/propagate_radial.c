@@ -187,8 +187,7 @@ const tyn_pass_desc tyn_pass_propagate_radial = {
     .name = "propagate_radial",
     .summary = "light of each lamp moved cell by cell in its radial grid (Elek 2014)",
     TYN_PASS_TABLES(tyn_propagate_radial_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(SEEN),
     .debug_meaning = "radiance sent to the eye times r^2, middle of the radial grids",
 };

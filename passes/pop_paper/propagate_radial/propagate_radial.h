@@ -69,5 +69,4 @@ typedef struct tyn_propagate_radial_params {
     X(PROPAGATE_RADIAL, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
     X(PROPAGATE_RADIAL, LAMPS, lamps, SCRATCH, BUFFER, "struct light_block[]")
 // clang-format on
-enum { PROPAGATE_RADIAL_PORTS(TYN_PORT_ENUM), PROPAGATE_RADIAL_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_propagate_radial;
+TYN_PASS(PROPAGATE_RADIAL, propagate_radial);

@@ -71,9 +71,8 @@ typedef struct tyn_propagate_rect_params {
     X(PROPAGATE_RECT, BESIDE_OTHER, beside_other, SCRATCH, BUFFER, "of every other iteration"), \
     X(PROPAGATE_RECT, SMALL, small, SCRATCH, IMAGE_3D, \
         "density or sigma_s at a resolution that suits the cells,", .format = VK_FORMAT_R32_SFLOAT), \
-    X(PROPAGATE_RECT, SMALL_SIGMA_A, small_sigma_a, SCRATCH, IMAGE_3D, \
-        ".. if the medium's is more than twice as fine", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(PROPAGATE_RECT, SMALL_G, small_g, SCRATCH, IMAGE_3D, "g, shrunk", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(PROPAGATE_RECT, SMALL_SIGMA_A, small_sigma_a, SCRATCH, RGBA_3D, \
+        ".. if the medium's is more than twice as fine"), \
+    X(PROPAGATE_RECT, SMALL_G, small_g, SCRATCH, RGBA_3D, "g, shrunk")
 // clang-format on
-enum { PROPAGATE_RECT_PORTS(TYN_PORT_ENUM), PROPAGATE_RECT_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_propagate_rect;
+TYN_PASS(PROPAGATE_RECT, propagate_rect);

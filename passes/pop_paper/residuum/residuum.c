@@ -87,8 +87,7 @@ const tyn_pass_desc tyn_pass_residuum = {
     .name = "residuum",
     .summary = "light left in the aligned grids moved on as isotropic light in one grid",
     TYN_PASS_TABLES(tyn_residuum_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(RESIDUUM),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

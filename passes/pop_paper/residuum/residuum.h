@@ -32,9 +32,9 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
     TYN_MEDIUM(X, RESIDUUM), \
     X(RESIDUUM, PLACES, places, IN, BUFFER, "struct propagate_place[], of propagate_rect"), \
     X(RESIDUUM, LIGHT, light, IN, IMAGE_3D, "of propagate_rect: L per irradiance"), \
-    X(RESIDUUM, RESIDUUM, residuum, OUT, IMAGE_3D, \
+    X(RESIDUUM, RESIDUUM, residuum, OUT, RGBA_3D, \
         "cubic cells that span the medium's box (lattice.glsl): light to the eye per unit of sigma_s, W/(m^2 " \
-        "sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "sr)"), \
     X(RESIDUUM, STATE, state, OUT, BUFFER, \
         "vec4[], after the last iteration: light at the faces of a cell, its power per area of a face, W/m^2;" \
         " x fastest"), \
@@ -42,5 +42,4 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
     X(RESIDUUM, KEPT, kept, SCRATCH, BUFFER, "vec4[]: transmittance of half a cell"), \
     X(RESIDUUM, SUM, sum, SCRATCH, BUFFER, "vec4[]: light of all iterations, W/m^2")
 // clang-format on
-enum { RESIDUUM_PORTS(TYN_PORT_ENUM), RESIDUUM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_residuum;
+TYN_PASS(RESIDUUM, residuum);

@@ -53,8 +53,7 @@ const tyn_pass_desc tyn_pass_upsample = {
     .name = "upsample",
     .summary = "joint bilateral upsampling of the merged grid's light",
     TYN_PASS_TABLES(tyn_upsample_params),
-    .params = params,
-    .num_params = TYN_COUNT(params),
+    TYN_SETTINGS(params),
     .debug_port = PORT(INSCATTER),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

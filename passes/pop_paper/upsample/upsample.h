@@ -19,9 +19,7 @@ typedef struct tyn_upsample_params {
 #define UPSAMPLE_PORTS(X) \
     TYN_MEDIUM(X, UPSAMPLE), \
     X(UPSAMPLE, MERGED, merged, IN, IMAGE_3D, "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"), \
-    X(UPSAMPLE, INSCATTER, inscatter, OUT, IMAGE_3D, \
-        "dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw; the ghost layer repeats the outer cells", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(UPSAMPLE, INSCATTER, inscatter, OUT, RGBA_3D, \
+        "dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw; the ghost layer repeats the outer cells")
 // clang-format on
-enum { UPSAMPLE_PORTS(TYN_PORT_ENUM), UPSAMPLE_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_upsample;
+TYN_PASS(UPSAMPLE, upsample);

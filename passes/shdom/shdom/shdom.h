@@ -29,9 +29,8 @@ typedef struct tyn_shdom_params {
         "float[coefficient][cell]: source function of the first channel in spherical harmonics, W/(m^3 sr)"), \
     X(SHDOM, SENT_1, sent_1, OUT, BUFFER, "of the second"), \
     X(SHDOM, SENT_2, sent_2, OUT, BUFFER, "of the third"), \
-    X(SHDOM, MOMENTS, moments, OUT, IMAGE_3D, \
-        "stacked: fluence phi and net flux (x, y, z) of all light less `source`, W/m^2", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHDOM, MOMENTS, moments, OUT, RGBA_3D, \
+        "stacked: fluence phi and net flux (x, y, z) of all light less `source`, W/m^2"), \
     X(SHDOM, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(SHDOM, DIRECTIONS, directions, SCRATCH, BUFFER, "vec4[ordinate]: direction of travel, weight, sr"), \
     X(SHDOM, BASIS, basis, SCRATCH, BUFFER, "float[coefficient][ordinate]"), \
@@ -43,5 +42,4 @@ typedef struct tyn_shdom_params {
     X(SHDOM, EMITTED, emitted, SCRATCH, BUFFER, "float[ordinate of a batch][cell]: source function, or radiance"), \
     X(SHDOM, LINES, lines, SCRATCH, BUFFER, "float[ordinate of a batch][slice][line]: radiance, W/(m^2 sr)")
 // clang-format on
-enum { SHDOM_PORTS(TYN_PORT_ENUM), SHDOM_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_shdom;
+TYN_PASS(SHDOM, shdom);

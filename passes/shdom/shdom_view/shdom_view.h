@@ -27,19 +27,13 @@ typedef struct tyn_shdom_view_params {
     X(SHDOM_VIEW, SENT_2, sent_2, OPTIONAL, BUFFER, "of the third"), \
     TYN_COLUMNS(X##_OPTIONAL, SHDOM_VIEW), \
     TYN_RADIALS(X##_OPTIONAL, SHDOM_VIEW), \
-    X(SHDOM_VIEW, INSCATTER, inscatter, OUT, IMAGE_3D, \
-        "dims + 2: light towards the eye per sigma_s, W/(m^2 sr); sample at lattice_inscatter_uvw", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHDOM_VIEW, INSCATTER, inscatter, OUT, RGBA_3D, \
+        "dims + 2: light towards the eye per sigma_s, W/(m^2 sr); sample at lattice_inscatter_uvw"), \
     X(SHDOM_VIEW, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were clamped or not finite"), \
-    X(SHDOM_VIEW, TOWARDS, towards, SCRATCH, IMAGE_3D, "source function towards the eye, delta scaled, W/(m^3 sr)", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(SHDOM_VIEW, EXTINCTION, extinction, SCRATCH, IMAGE_3D, "delta scaled, 1/m", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(SHDOM_VIEW, SCATTERED, scattered, SCRATCH, IMAGE_3D, \
-        "what of it is not emission or drawn by the march, with the whole phase function for what scatters once", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(SHDOM_VIEW, SEEN, seen, SCRATCH, IMAGE_3D, "with forward peaks, per sigma_s, W/(m^2 sr); a = 1 where there is medium", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(SHDOM_VIEW, TOWARDS, towards, SCRATCH, RGBA_3D, "source function towards the eye, delta scaled, W/(m^3 sr)"), \
+    X(SHDOM_VIEW, EXTINCTION, extinction, SCRATCH, RGBA_3D, "delta scaled, 1/m"), \
+    X(SHDOM_VIEW, SCATTERED, scattered, SCRATCH, RGBA_3D, \
+        "what of it is not emission or drawn by the march, with the whole phase function for what scatters once"), \
+    X(SHDOM_VIEW, SEEN, seen, SCRATCH, RGBA_3D, "with forward peaks, per sigma_s, W/(m^2 sr); a = 1 where there is medium")
 // clang-format on
-enum { SHDOM_VIEW_PORTS(TYN_PORT_ENUM), SHDOM_VIEW_NUM_PORTS };
-extern const tyn_pass_desc tyn_pass_shdom_view;
+TYN_PASS(SHDOM_VIEW, shdom_view);
