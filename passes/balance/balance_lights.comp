@@ -25,6 +25,9 @@
 #include "shaders/surfaces/surface_texture.glsl"
 
 layout(local_size_x = BALANCE_GROUP) in;
+#define WORKGROUP_SIZE BALANCE_GROUP
+#define WORKGROUP_SUM vec3
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(balance_lights_args args);
 TYN_READ(16, lights, light_block lights[]);
 TYN_WRITE(17, found, balance_light found[]);
@@ -36,7 +39,6 @@ layout(binding = 19) uniform sampler3D cells;
 const uint SUN_RAYS = 160u, LAMP_RAYS = 96u, VPL_RAYS = 24u, SKY_RAYS = 16u; // squared: of a sun for each face
 const uint SUN = 0u, SKY = 1u, LAMP = 2u, VPL = 3u;
 
-shared vec3 sums[BALANCE_GROUP];
 vec3 sent = vec3(0.0), kept = vec3(0.0), escaped = vec3(0.0); // W
 
 vec3 albedo_at(surface_hit hit)
@@ -199,37 +201,22 @@ void follow_local(uint n)
     }
 }
 
-vec3 total_of(vec3 v)
-{
-    uint lane = gl_LocalInvocationIndex;
-    barrier();
-    sums[lane] = v;
-    for (uint half_n = BALANCE_GROUP / 2u; half_n > 0u; half_n /= 2u) {
-        barrier();
-        if (lane < half_n) {
-            sums[lane] += sums[lane + half_n];
-        }
-    }
-    barrier();
-    return sums[0];
-}
-
 void main()
 {
     uint suns = args.num_suns * BALANCE_SUN_PARTS, group = gl_WorkGroupID.x, n = group - suns - args.sky_parts;
     vec3 entering = vec3(0.0), emitted = vec3(0.0);
     if (group < suns) {
         follow_sun(group / BALANCE_SUN_PARTS, group % BALANCE_SUN_PARTS);
-        entering = total_of(sent);
+        entering = workgroup_total(sent);
     } else if (group < suns + args.sky_parts) {
         follow_sky(group - suns);
-        entering = total_of(sent);
+        entering = workgroup_total(sent);
     } else if (args.locals != 0u && n < radial_count) {
         follow_local(n);
         light_block l = radials[n].light;
         emitted = n < radial_num_lamps ? l.color * light_lobe_integral(l) : vec3(0.0);
     }
-    vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);
+    vec3 all_kept = workgroup_total(kept), all_escaped = workgroup_total(escaped);
     if (gl_LocalInvocationIndex == 0u) {
         found[group] = balance_light(entering, emitted, all_kept, all_escaped);
     }

@@ -6,12 +6,13 @@
 #include "shaders/surfaces/reflectance.glsl"
 
 layout(local_size_x = RSM_SKY_BLOCK) in;
+#define WORKGROUP_SIZE RSM_SKY_BLOCK
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(rsm_sky_args args);
 TYN_WRITE(7, areas, float areas[]);
 TYN_WRITE(8, area_blocks, float area_blocks[]);
 #include "rsm_sky_places.glsl"
-
-shared float sums[RSM_SKY_BLOCK];
 
 vec3 corner(uint vertex)
 {
@@ -28,15 +29,9 @@ void main()
             own = rsm_sky_count(corner(t.x), corner(t.y), corner(t.z));
         }
     }
-    sums[lane] = own < 1e30 ? own : 0.0; // also where it is no number
-    for (uint step = 1u; step < RSM_SKY_BLOCK; step *= 2u) {
-        barrier();
-        float before = lane >= step ? sums[lane - step] : 0.0;
-        barrier();
-        sums[lane] += before;
-    }
-    areas[i] = sums[lane];
+    workgroup_cumulate(own < 1e30 ? own : 0.0); // also where it is no number
+    areas[i] = workgroup_sums[lane];
     if (lane == RSM_SKY_BLOCK - 1u) {
-        area_blocks[gl_WorkGroupID.x] = sums[lane];
+        area_blocks[gl_WorkGroupID.x] = workgroup_sums[lane];
     }
 }

@@ -2,10 +2,11 @@
 #include "rsm_sky_args.h"
 
 layout(local_size_x = RSM_SKY_BLOCK) in;
+#define WORKGROUP_SIZE RSM_SKY_BLOCK
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(rsm_sky_args args);
 TYN_UPDATE(0, area_blocks, float area_blocks[]);
-
-shared float sums[RSM_SKY_BLOCK];
 
 void main()
 {
@@ -16,21 +17,14 @@ void main()
     for (uint i = first; i < end; i++) {
         sum += area_blocks[i];
     }
-    sums[lane] = sum;
-    for (uint step = 1u; step < RSM_SKY_BLOCK; step *= 2u) {
-        barrier();
-        float before = lane >= step ? sums[lane - step] : 0.0;
-        barrier();
-        sums[lane] += before;
-    }
-    barrier();
-    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    workgroup_cumulate(sum);
+    float before = lane > 0u ? workgroup_sums[lane - 1u] : 0.0;
     for (uint i = first; i < end; i++) {
         float own = area_blocks[i];
         area_blocks[i] = before;
         before += own;
     }
     if (lane == RSM_SKY_BLOCK - 1u) {
-        area_blocks[blocks] = sums[lane];
+        area_blocks[blocks] = workgroup_sums[lane];
     }
 }

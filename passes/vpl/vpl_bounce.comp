@@ -11,6 +11,9 @@
 
 const uint GROUP = 256u;
 layout(local_size_x = GROUP) in;
+#define WORKGROUP_SIZE GROUP
+#define WORKGROUP_SUM vec3
+#include "shaders/common/workgroup.glsl"
 
 TYN_READ(0, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
 TYN_READ(1, bins, vpl_bins bins);
@@ -21,23 +24,6 @@ layout(binding = 5, rgba32f) uniform image2D bin_flux_image; // as rsm_args.h ha
 layout(binding = 6, rgba32f) uniform writeonly image2D bin_position_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D bin_normal_image;
 TYN_ARGS(vpl_bounce_args args);
-
-shared vec3 sums[GROUP];
-
-vec3 total_of(vec3 v)
-{
-    uint lane = gl_LocalInvocationIndex;
-    barrier();
-    sums[lane] = v;
-    for (uint half_size = GROUP / 2u; half_size > 0u; half_size /= 2u) {
-        barrier();
-        if (lane < half_size) {
-            sums[lane] += sums[lane + half_size];
-        }
-    }
-    barrier();
-    return sums[0];
-}
 
 vec3 flux_of(uint bin)
 {
@@ -58,8 +44,8 @@ void main()
             before += imageLoad(bin_flux_image, ivec2(hilbert_texel(VPL_BIN_SIDE, bin))).rgb;
             now += flux_of(bin);
         }
-        before = total_of(before);
-        now = total_of(now);
+        before = workgroup_total(before);
+        now = workgroup_total(now);
         before_share = 1.0 - min(now / max(before, vec3(1e-30)), vec3(1.0));
         share = min(before / max(now, vec3(1e-30)), vec3(1.0));
     }

@@ -13,6 +13,9 @@
 #include "shaders/light/shadow_args.h"
 
 layout(local_size_x = VPL_LANES) in;
+#define WORKGROUP_SIZE VPL_LANES
+#define WORKGROUP_SUM vec4
+#include "shaders/common/workgroup.glsl"
 
 TYN_READ(16, weights, float weights[]); // of an element and those before it in its block
 TYN_READ(17, blocks, float blocks[]); // weights before each, and the whole
@@ -23,36 +26,19 @@ TYN_UPDATE(21, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block
 TYN_ARGS(vpl_args args);
 
 const uint DEPTH_SAMPLES = 256u; // on the way from a light
-shared vec4 sums[VPL_LANES];
-
-vec4 total_of(vec4 v)
-{
-    uint lane = gl_LocalInvocationIndex;
-    barrier();
-    sums[lane] = v;
-    for (uint half_size = VPL_LANES / 2u; half_size > 0u; half_size /= 2u) {
-        barrier();
-        if (lane < half_size) {
-            sums[lane] += sums[lane + half_size];
-        }
-    }
-    barrier();
-    return sums[0];
-}
-
 float most_of(float v)
 {
     uint lane = gl_LocalInvocationIndex;
     barrier();
-    sums[lane].x = v;
+    workgroup_sums[lane].x = v;
     for (uint half_size = VPL_LANES / 2u; half_size > 0u; half_size /= 2u) {
         barrier();
         if (lane < half_size) {
-            sums[lane].x = max(sums[lane].x, sums[lane + half_size].x);
+            workgroup_sums[lane].x = max(workgroup_sums[lane].x, workgroup_sums[lane + half_size].x);
         }
     }
     barrier();
-    return sums[0].x;
+    return workgroup_sums[0].x;
 }
 
 // The first element of a block with which cumulated weights reach beyond one; rounding may leave none: then the
@@ -106,7 +92,7 @@ vec3 depth_from_light(uint light, vec3 p)
         medium_point m = medium_sample(p + (span.x + (float(i) + 0.5) * ds) * towards);
         sigma_t += m.sigma_a + delta_scaled(m.sigma_s, m.phase);
     }
-    return total_of(vec4(sigma_t * ds, 0.0)).rgb;
+    return workgroup_total(vec4(sigma_t * ds, 0.0)).rgb;
 }
 
 // The part of an element that is in the stratum: from where, to where, and its weight.
@@ -165,7 +151,7 @@ void main()
             }
         }
     }
-    flux = total_of(flux);
+    flux = workgroup_total(flux);
     // As much as if all of the stratum were as near as this place: else what is far would shine from near by.
     float power = flux.r + flux.g + flux.b, nearness = vpl_nearness(block, at, args.near_lo, args.near_hi);
     if (vpl_of_sky(block)) {
@@ -192,8 +178,8 @@ void main()
             }
         }
     }
-    place = total_of(place);
-    normal = total_of(normal);
+    place = workgroup_total(place);
+    normal = workgroup_total(normal);
 
     light_block light;
     light.kind = TYN_LIGHT_KIND_COSINE;

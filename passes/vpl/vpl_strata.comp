@@ -7,6 +7,9 @@
 #include "shaders/beams/radial_args.h"
 
 layout(local_size_x = VPL_BLOCK) in;
+#define WORKGROUP_SIZE VPL_BLOCK
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 
 TYN_READ(0, plan, vpl_plan plan);
 TYN_UPDATE(1, blocks, float blocks[]); // in: weights; out: what is before; one more element, the whole
@@ -14,7 +17,6 @@ TYN_WRITE(2, strata, vpl_stratum strata[]);
 TYN_UPDATE(3, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad); // before those of this time
 TYN_ARGS(vpl_args args);
 
-shared float sums[VPL_BLOCK];
 shared float starts[VPL_MAX_SOURCES + 1];
 
 // Where in a stratum, [0, 1), the element is whose surface the VPL lies on. All power of a stratum that is in a
@@ -35,21 +37,14 @@ void main()
     for (uint i = first; i < end; i++) {
         sum += blocks[i];
     }
-    sums[lane] = sum;
-    for (uint step = 1u; step < VPL_BLOCK; step *= 2u) {
-        barrier();
-        float before = lane >= step ? sums[lane - step] : 0.0;
-        barrier();
-        sums[lane] += before;
-    }
-    barrier();
-    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    workgroup_cumulate(sum);
+    float before = lane > 0u ? workgroup_sums[lane - 1u] : 0.0;
     for (uint i = first; i < end; i++) {
         float weight = blocks[i];
         blocks[i] = before;
         before += weight;
     }
-    float total = sums[VPL_BLOCK - 1u];
+    float total = workgroup_sums[VPL_BLOCK - 1u];
     if (lane == 0u) {
         blocks[plan.num_blocks] = total;
     }

@@ -4,14 +4,15 @@
 #include "vpl_elements.glsl"
 
 layout(local_size_x = VPL_LANES) in;
+#define WORKGROUP_SIZE VPL_LANES
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 
 TYN_WRITE(11, weights, float weights[]); // of an element and those before it in its block
 TYN_WRITE(12, blocks, float blocks[]);
 TYN_ARGS(vpl_args args);
 
 const uint EACH = VPL_BLOCK / VPL_LANES; // elements of a thread, one after the other
-shared float sums[VPL_LANES];
-
 void main()
 {
     uint index = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
@@ -22,15 +23,8 @@ void main()
         sum += vpl_weight(vpl_flux(block, e)) * vpl_nearness(block, e, args.near_lo, args.near_hi);
         own[i] = sum;
     }
-    sums[lane] = sum;
-    for (uint step = 1u; step < VPL_LANES; step *= 2u) {
-        barrier();
-        float before = lane >= step ? sums[lane - step] : 0.0;
-        barrier();
-        sums[lane] += before;
-    }
-    barrier();
-    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    workgroup_cumulate(sum);
+    float before = lane > 0u ? workgroup_sums[lane - 1u] : 0.0;
     for (uint i = 0u; i < EACH; i++) {
         weights[index * VPL_BLOCK + EACH * lane + i] = before + own[i];
     }

@@ -12,6 +12,9 @@
 #include "shaders/light/vpl_visibility.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in;
+#define WORKGROUP_SIZE WALL_LIGHT_GROUP
+#define WORKGROUP_SUM vec4
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(wall_light_args args);
 layout(binding = 5) uniform sampler2D vpl_distances_tex;
 TYN_WRITE(6, power, wall_light_power power);
@@ -19,8 +22,6 @@ layout(constant_id = 1) const uint rooms = 0;
 #define LATTICE_ROOMS 7
 #include "shaders/walls/lattice_rooms.glsl"
 TYN_UPDATE(8, first, uint first[]); // by room: the first VPL that shines there
-
-shared vec4 sums[WALL_LIGHT_GROUP]; // arrives, per W/sr; of all directions
 
 const float PI = 3.14159265;
 
@@ -45,7 +46,7 @@ void main()
     mat3 frame = vpl_frame(light.direction);
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
     ivec2 corner = vpl_map_corner(vpl, side);
-    vec4 sum = vec4(0.0);
+    vec4 sum = vec4(0.0); // arrives, per W/sr; of all directions
     for (uint k = me; k < rays; k += WALL_LIGHT_GROUP) {
         ivec2 at = ivec2(k % uint(side), k / uint(side));
         vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
@@ -58,17 +59,11 @@ void main()
         beam_tau tau = radial_tau(radial_place_in(grid, away, length(away)));
         sum += share * vec4(meets ? exp(-(tau.a + tau.p)) : vec3(0.0), 1.0);
     }
-    sums[me] = sum;
-    for (uint half_n = WALL_LIGHT_GROUP / 2u; half_n > 0u; half_n /= 2u) {
-        barrier();
-        if (me < half_n) {
-            sums[me] += sums[me + half_n];
-        }
-    }
+    sum = workgroup_total(sum);
     if (me == 0u) {
         uint room = shines ? room_of(vpl, light, box) : TYN_ROOMS_NONE;
         power.room[vpl] = room;
-        power.expected[vpl] = shines ? light.color * (PI * sums[0].rgb / max(sums[0].a, 1e-20)) : vec3(0.0);
+        power.expected[vpl] = shines ? light.color * (PI * sum.rgb / max(sum.a, 1e-20)) : vec3(0.0);
         if (room <= args.dims.x * args.dims.y * args.dims.z) {
             atomicMin(first[room], vpl);
         }

@@ -3,6 +3,9 @@
 #include "wall_light_args.h"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;
+#define WORKGROUP_SIZE WALL_LIGHT_SUM_GROUP
+#define WORKGROUP_SUM vec3
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(wall_light_args args);
 TYN_READ(0, arrived, vec3 arrived[]); // W/m^2, times the area over dx^2
 TYN_WRITE(1, parts, vec3 parts[]); // [room, by its first VPL][part]: 0, but for what is written here
@@ -11,7 +14,6 @@ layout(constant_id = 0) const uint rooms = 0;
 #define WALL_LIGHT_FIRST 3
 #include "wall_light_rooms.glsl"
 
-shared vec3 sums[WALL_LIGHT_SUM_GROUP];
 shared uint next;
 
 void main()
@@ -46,15 +48,9 @@ void main()
             vec3 light = arrived[i];
             sum += light != vec3(0.0) && first_vpl(i) == from ? light : vec3(0.0);
         }
-        sums[me] = sum;
-        for (uint half_n = WALL_LIGHT_SUM_GROUP / 2u; half_n > 0u; half_n /= 2u) {
-            barrier();
-            if (me < half_n) {
-                sums[me] += sums[me + half_n];
-            }
-        }
+        sum = workgroup_total(sum);
         if (me == 0u) {
-            parts[from * WALL_LIGHT_PARTS + part] = sums[0];
+            parts[from * WALL_LIGHT_PARTS + part] = sum;
         }
     }
 }

@@ -9,7 +9,9 @@ layout(local_size_x = 256) in;
 TYN_READ(1, samples, gradient_sample samples[]);
 TYN_UPDATE(2, heads, gradient_head heads);
 
-shared float sums[256];
+#define WORKGROUP_SIZE 256u
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 
 void main()
 {
@@ -21,14 +23,8 @@ void main()
     for (uint n = i; n < count; n += 256u) {
         sum += samples[n].seen;
     }
-    sums[i] = sum * of_radius.x * of_radius.y * of_radius.z;
-    for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
-        barrier();
-        if (i < half_of) {
-            sums[i] += sums[i + half_of];
-        }
-    }
+    sum = workgroup_total(sum * of_radius.x * of_radius.y * of_radius.z);
     if (i == 0u) {
-        heads.reference = sums[0];
+        heads.reference = sum;
     }
 }

@@ -30,7 +30,9 @@ TYN_UPDATE(19, counters, counters_block counters);
 
 layout(constant_id = 1) const uint walls = 0;
 
-shared float sums[LPV_REFLECT_LANES];
+#define WORKGROUP_SIZE LPV_REFLECT_LANES
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 
 // Of all texels, W: the same in every workgroup.
 float bound_of_all()
@@ -40,15 +42,7 @@ float bound_of_all()
     for (uint i = lane; i < args.num_blocks; i += LPV_REFLECT_LANES) {
         sum += partials[i];
     }
-    sums[lane] = sum;
-    for (uint half_n = LPV_REFLECT_LANES / 2u; half_n > 0u; half_n /= 2u) {
-        barrier();
-        if (lane < half_n) {
-            sums[lane] += sums[lane + half_n];
-        }
-    }
-    barrier();
-    return sums[0];
+    return workgroup_total(sum);
 }
 
 // The cell in front of a surface: half an edge off it, or more, until its centre is on that side.

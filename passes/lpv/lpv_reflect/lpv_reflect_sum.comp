@@ -7,7 +7,9 @@ TYN_ARGS(lpv_reflect_args args);
 layout(binding = 0) uniform sampler2D rsm_flux_tex;
 TYN_WRITE(1, partials, float partials[]);
 
-shared float sums[LPV_REFLECT_LANES];
+#define WORKGROUP_SIZE LPV_REFLECT_LANES
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 
 void main()
 {
@@ -27,14 +29,8 @@ void main()
             }
         }
     }
-    sums[lane] = sum;
-    for (uint half_n = LPV_REFLECT_LANES / 2u; half_n > 0u; half_n /= 2u) {
-        barrier();
-        if (lane < half_n) {
-            sums[lane] += sums[lane + half_n];
-        }
-    }
+    sum = workgroup_total(sum);
     if (lane == 0u) {
-        partials[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = sums[0];
+        partials[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = sum;
     }
 }
