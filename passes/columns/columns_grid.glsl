@@ -10,8 +10,6 @@
 // A column that has left the lattice at the far side goes on as the next that comes in at the near
 // side: size + 1 of them along a side are enough for all slices. Column m is at place
 // (m + floor(offset)) mod (size + 1) in a slice, at coordinate place - 1/2 + fract(offset).
-#ifndef TYN_COLUMNS_GRID_GLSL
-#define TYN_COLUMNS_GRID_GLSL
 
 struct columns_grid {
     int u, v, w;      // axes of M
@@ -83,5 +81,3 @@ vec2 columns_inside(columns_grid grid, vec2 along_u, vec2 along_v, vec2 slice)
 {
     return max(min(min(along_u, along_v), slice - grid.front), 0.0);
 }
-
-#endif

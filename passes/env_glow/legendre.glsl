@@ -3,10 +3,8 @@
 // For l < 64 in single precision. Towards the poles P_mm ~ sin^m theta underflows for large m, but only
 // where P_lm is below 1e-9 for every l < 64 too: it grows from P_mm by less than e^24 before it starts to
 // oscillate.
-#ifndef TYN_LEGENDRE_GLSL
-#define TYN_LEGENDRE_GLSL
-
 // P_mm / sin^m theta.
+
 float legendre_norm(uint m)
 {
     float norm = 0.70710678;
@@ -22,5 +20,3 @@ vec2 legendre_recurrence(uint l, uint m)
     float ll = float(l * l), mm = float(m * m), before = float((l - 1u) * (l - 1u));
     return vec2(sqrt((4.0 * ll - 1.0) / (ll - mm)), sqrt(max(before - mm, 0.0) / abs(4.0 * before - 1.0)));
 }
-
-#endif

@@ -1,6 +1,4 @@
 // gbuffer_sample.glsl -- what both steps of the G-buffer that follow the drawing read and write.
-#ifndef GBUFFER_SAMPLE_GLSL
-#define GBUFFER_SAMPLE_GLSL
 #include "shaders/common/scene_args.h"
 #include "shaders/surfaces/gbuffer_edges.glsl"
 
@@ -34,5 +32,3 @@ void store_whole(ivec2 pixel, gbuffer_point p)
     imageStore(facing_image, pixel, gbuffer_facing_pack(gbuffer_facing(GBUFFER_WHOLE, 0, p.normal, p.facet)));
     imageStore(colours_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_pack(p.colours));
 }
-
-#endif

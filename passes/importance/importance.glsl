@@ -1,7 +1,5 @@
 // importance.glsl -- the grid in the camera's pyramid, and directions of the importance map.
 // No bindings.
-#ifndef TYN_IMPORTANCE_GLSL
-#define TYN_IMPORTANCE_GLSL
 #include "shaders/common/scene_args.h"
 #include "shaders/beams/propagate_hop.glsl"
 #include "importance_args.h"
@@ -138,5 +136,3 @@ float importance_share(uint row)
     return 0.5 * (cos(float(row) * step) - cos(float(row + 1u) * step)) /
            float(TYN_IMPORTANCE_WIDTH);
 }
-
-#endif

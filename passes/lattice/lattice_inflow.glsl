@@ -3,8 +3,6 @@
 //
 // Before including: correction_at(uint index), lattice_stencil.glsl, lattice_levels.glsl, and LATTICE_REPEAT, the
 // number of a specialisation constant: a bit for each axis along which the grid goes on beyond the box.
-#ifndef TYN_LATTICE_INFLOW_GLSL
-#define TYN_LATTICE_INFLOW_GLSL
 
 layout(constant_id = LATTICE_REPEAT) const uint lattice_repeat = 0;
 
@@ -36,5 +34,3 @@ float lattice_inflow(float sum, lattice_level level, ivec3 c, uint i, lattice_st
     sum += k.hi.z * lattice_beside(i, c.z, level.size.z, step_z, 1, 2);
     return sum;
 }
-
-#endif

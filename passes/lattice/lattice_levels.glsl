@@ -2,8 +2,6 @@
 //
 // Level l + 1 has half the cells of level l along each axis, rounded up. The levels of a channel
 // follow each other, finest first; within a level x is fastest.
-#ifndef TYN_LATTICE_LEVELS_GLSL
-#define TYN_LATTICE_LEVELS_GLSL
 
 struct lattice_level {
     ivec3 size;
@@ -33,5 +31,3 @@ uint lattice_index(lattice_level l, ivec3 c)
 {
     return l.first + uint((c.z * l.size.y + c.y) * l.size.x + c.x);
 }
-
-#endif

@@ -4,8 +4,6 @@
 // six faces of conductance (e - e behind the face), plus absorption e, is the right hand side in W.
 // Outside the box e is 0, and the half cell and the Robin condition in series are the conductance
 // to there.
-#ifndef TYN_LATTICE_STENCIL_GLSL
-#define TYN_LATTICE_STENCIL_GLSL
 
 struct lattice_stencil {
     vec3 lo, hi;      // conductances to -x, -y, -z and to +x, +y, +z
@@ -77,5 +75,3 @@ float lattice_corner_weight(uint corner)
     return ((corner & 1) == 0 ? 0.75 : 0.25) * ((corner & 2) == 0 ? 0.75 : 0.25) *
            ((corner & 4) == 0 ? 0.75 : 0.25);
 }
-
-#endif

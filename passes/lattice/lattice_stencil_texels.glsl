@@ -1,7 +1,5 @@
 // lattice_stencil_texels.glsl -- the stencils of all levels and channels. Define LATTICE_STENCIL_LO, LATTICE_STENCIL_HI:
 // bindings.
-#ifndef TYN_LATTICE_STENCIL_TEXELS_GLSL
-#define TYN_LATTICE_STENCIL_TEXELS_GLSL
 #include "lattice_stencil.glsl"
 
 layout(binding = LATTICE_STENCIL_LO) uniform samplerBuffer stencil_lo_texels;
@@ -22,5 +20,3 @@ lattice_stencil lattice_stencil_at(uint i)
 {
     return lattice_stencil_of(lattice_stencil_lo_at(i), lattice_stencil_hi_at(i));
 }
-
-#endif

@@ -3,8 +3,6 @@
 // The state's vectors are the moments of all cells of all channels; then, where there are walls, their
 // radiance, four cells of a channel to a vector. Include after lattice_args.h, with the push constants args.
 // Define LATTICE_WALL_LINKS, LATTICE_WALL_CELLS: bindings of the pass walls' buffers.
-#ifndef TYN_LATTICE_WALL_STATE_GLSL
-#define TYN_LATTICE_WALL_STATE_GLSL
 #include "shaders/walls/walls_args.h"
 
 #ifdef LATTICE_WALL_LINKS
@@ -36,5 +34,3 @@ uint lattice_wall_vector(uint ch, uint cell)
     uint n = lattice_all_cells();
     return args.channels * n + ch * ((n + 3u) / 4u) + cell / 4u;
 }
-
-#endif

@@ -1,6 +1,4 @@
 // disc.glsl -- what a Lambertian disc sends to a point of a medium. No bindings.
-#ifndef TYN_DISC_GLSL
-#define TYN_DISC_GLSL
 
 struct disc_light {
     float fluence; // of the intensity along the disc's normal, 1/m^2
@@ -24,5 +22,3 @@ disc_light disc_light_at(vec3 away, vec3 normal, float radius)
     vec3 mean = 0.5 * (away * inversesqrt(r2 + square) + normalize(nearest));
     return disc_light(flux / dot(mean, normal), mean);
 }
-
-#endif

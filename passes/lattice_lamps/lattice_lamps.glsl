@@ -1,7 +1,5 @@
 // lattice_lamps.glsl -- which local lights make up a group, and how they light cells. Include after
 // lattice_args.h and radial.glsl.
-#ifndef TYN_LATTICE_LAMPS_GLSL
-#define TYN_LATTICE_LAMPS_GLSL
 #include "lattice_lamps_disc.glsl"
 
 // First and last light, less than which.
@@ -20,5 +18,3 @@ uint lattice_lamps_vpl_pieces(float cells_away)
 {
     return cells_away < 1.0 ? 3u : cells_away < 2.0 ? 2u : 1u;
 }
-
-#endif

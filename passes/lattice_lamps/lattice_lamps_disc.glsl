@@ -1,7 +1,5 @@
 // lattice_lamps_disc.glsl -- light that a local light sends to a piece of a medium: a lamp from its point, a virtual point
 // light (VPL) from the disc that it stands for. Include after radial.glsl.
-#ifndef TYN_LATTICE_LAMPS_DISC_GLSL
-#define TYN_LATTICE_LAMPS_DISC_GLSL
 #include "disc.glsl"
 
 // Mean over a cube of edge d whose middle is at `away`.
@@ -16,5 +14,3 @@ disc_light lattice_lamps_light(light_block light, vec3 away, float d)
     disc.fluence = r2 > d2 ? disc.fluence * r2 * point : min(disc.fluence, point);
     return disc;
 }
-
-#endif

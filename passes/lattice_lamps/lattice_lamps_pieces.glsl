@@ -2,8 +2,6 @@
 //
 // Include after what lattice_lamps_cells.comp includes; define LATTICE_LAMPS_VISIBILITY(n, p, away), the share
 // of light n that surfaces let through to p. The kernel has the constants num_channels, walls and shadowed.
-#ifndef TYN_LATTICE_LAMPS_PIECES_GLSL
-#define TYN_LATTICE_LAMPS_PIECES_GLSL
 #include "shaders/common/quotient.glsl"
 
 // Adds light n to the moments of the channels, the cell cut into count^3 pieces.
@@ -54,5 +52,3 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
         all[ch] += scale * open[ch];
     }
 }
-
-#endif

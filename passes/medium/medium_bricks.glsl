@@ -1,8 +1,6 @@
 // medium_bricks.glsl -- least and largest value over a brick, for the exact shapes. One thread does a
 // brick: no texel is fetched by more than a few threads, and nothing needs to be joined.
 // Include after medium_shapes.glsl.
-#ifndef TYN_MEDIUM_BRICKS_GLSL
-#define TYN_MEDIUM_BRICKS_GLSL
 #include "shaders/common/uniform_branch.glsl"
 
 const vec2 BRICK_NOTHING = vec2(3.4e38, 0.0);
@@ -84,5 +82,3 @@ vec2 brick_of_shapes(vec3 lo, vec3 hi)
     }
     return vec2(max(max(least.x, least.y), least.z), max(max(largest.x, largest.y), largest.z));
 }
-
-#endif

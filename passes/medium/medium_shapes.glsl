@@ -3,8 +3,6 @@
 //
 // Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including; in the builds
 // with TYN_COLORS, for media with grids of colours, also COLORS (sampler3D).
-#ifndef TYN_MEDIUM_SHAPES_GLSL
-#define TYN_MEDIUM_SHAPES_GLSL
 #include "shaders/common/scene_args.h"
 
 TYN_UNIFORM(MEDIUM_BLOCK, medium, medium_block medium);
@@ -202,5 +200,3 @@ float shape_scale(shape_block s)
     float largest = max(max(sigma_t.x, sigma_t.y), sigma_t.z);
     return medium.sigma_t_max > 0.0 && largest > 0.0 ? largest / medium.sigma_t_max : 1.0;
 }
-
-#endif

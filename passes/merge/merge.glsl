@@ -4,8 +4,6 @@
 //
 // The buffer "field" has planes of one float per cell: J of each channel, before the clamp at 0, then
 // the largest sigma_s' of the channels.
-#ifndef TYN_MERGE_GLSL
-#define TYN_MERGE_GLSL
 #include "shaders/common/camera.glsl"
 
 uint merge_index(ivec3 cell, uint plane)
@@ -35,5 +33,3 @@ float merge_weight(camera_block camera, lattice_box box, ivec3 cell)
     bool seen = depth > -MERGE_REACH && all(lessThanEqual(abs(at), most + reach));
     return seen ? camera_select(camera, 1.0, 1.0 / max(dot(v, v), 1.0)) : 0.0;
 }
-
-#endif

@@ -1,8 +1,6 @@
 // merge_read.glsl -- which cells a picture reads. Include after merge.glsl, with the buffer field.
-#ifndef TYN_MERGE_READ_GLSL
-#define TYN_MERGE_READ_GLSL
-
 // Does the picture read this cell? It does so around every cell that scatters.
+
 bool merge_is_read(ivec3 c, ivec3 dims, uint channels)
 {
     ivec3 lo = max(c - 1, ivec3(0)), hi = min(c + 1, dims - 1);
@@ -16,5 +14,3 @@ bool merge_is_read(ivec3 c, ivec3 dims, uint channels)
     }
     return most > 0.0;
 }
-
-#endif

@@ -13,8 +13,6 @@
 //
 // Define TMS and SCATTER_LUT_BLOCK, the bindings of the table (sampler3D) and of the lut_block (uniform
 // buffer), before including.
-#ifndef TYN_TMS_GLSL
-#define TYN_TMS_GLSL
 #include "shaders/phase/scatter_lut_map.glsl"
 
 layout(set = 0, binding = TMS) uniform sampler3D tms_tex;
@@ -88,5 +86,3 @@ float tms_kernel_mixed(tms_last last, float mu, float tau_s, float tau_p, float 
     // Without a lobe the light is as narrow as it came.
     return phase_forward_cosine(last.phase) > 0.0 ? forward : phase_near(last.phase, mean_cosine, 1.0 - mu);
 }
-
-#endif

@@ -1,8 +1,6 @@
 // ordinates_cuts.glsl -- where to cut a region of the sky so that the parts share its light as wanted.
 //
 // Include after the declarations of `sums` and `weights`.
-#ifndef TYN_ORDINATES_CUTS_GLSL
-#define TYN_ORDINATES_CUTS_GLSL
 #include "ordinates_region.glsl"
 
 // What a cut shares out: light from a table, and `uniform_part` per sr.
@@ -88,5 +86,3 @@ uint ordinates_axis(ordinates_region r, float part, ordinates_density density, o
     cut = cuts[axis];
     return axis;
 }
-
-#endif

@@ -2,8 +2,6 @@
 //
 // A position on the map is in texels of the sums. Down a row it advances with the solid angle, so a
 // row's light and its solid angle are shared out alike, and everything is linear within a texel.
-#ifndef TYN_ORDINATES_REGION_GLSL
-#define TYN_ORDINATES_REGION_GLSL
 #include "shaders/light/sky.glsl"
 
 struct ordinates_region {
@@ -61,5 +59,3 @@ float ordinates_width(ordinates_region r)
 {
     return ordinates_solid_angle(r) - length(ordinates_vector(r));
 }
-
-#endif

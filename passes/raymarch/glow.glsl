@@ -6,8 +6,6 @@
 // and B is the environment smeared by the lobes of all orders from the first on (Goudsmit and Saunderson
 // 1940), with the Legendre moments (e^(t phi_l) - 1) / (e^t - 1), phi_l those of one forward scattering.
 // Pass env_glow makes the texture, in the map's frame and units.
-#ifndef TYN_GLOW_GLSL
-#define TYN_GLOW_GLSL
 #include "shaders/light/environment.glsl"
 #include "shaders/light/glow_args.h"
 
@@ -33,5 +31,3 @@ vec3 glow_radiance(sampler3D glow, env_block env, vec3 d_M, vec3 t)
                 textureLod(glow, vec3(uv, glow_w(t.g, levels)), 0.0).g,
                 textureLod(glow, vec3(uv, glow_w(t.b, levels)), 0.0).b);
 }
-
-#endif

@@ -17,9 +17,6 @@
 //
 // Include after camera, environment, medium, beam, radial, scatter_lut, lattice, lattice_walls and
 // shadow. RAYMARCH_GREY: all channels of the medium are equal, so optical depths are scalars.
-#ifndef TYN_RAYMARCH_GLSL
-#define TYN_RAYMARCH_GLSL
-
 #include "raymarch_medium.glsl"
 #include "raymarch_suns.glsl"
 
@@ -437,5 +434,3 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     result.scaled_transmittance = vec3(through_scaled);
     return result;
 }
-
-#endif

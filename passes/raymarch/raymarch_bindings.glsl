@@ -1,6 +1,4 @@
 // raymarch_bindings.glsl -- what the kernels of the ray march read and write, and their constants.
-#ifndef TYN_RAYMARCH_BINDINGS_GLSL
-#define TYN_RAYMARCH_BINDINGS_GLSL
 #include "shaders/common/scene_args.h"
 #include "shaders/common/counters.h"
 #include "raymarch_args.h"
@@ -51,5 +49,3 @@ layout(binding = 38, scalar) buffer rest_buffer
 } sparse_rest;
 
 TYN_ARGS(raymarch_args args);
-
-#endif

@@ -1,10 +1,8 @@
 // raymarch_lamps.glsl -- light of lamps that is scattered towards the eye in a step of a view ray.
 //
 // Included by raymarch.glsl.
-#ifndef TYN_RAYMARCH_LAMPS_GLSL
-#define TYN_RAYMARCH_LAMPS_GLSL
-
 // Where a view ray is in relation to a lamp, and what is needed on all of it.
+
 struct march_lamps {
     vec3 origin, direction;
     float start; // distance of the eye from the origin, m
@@ -219,5 +217,3 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
     away += (middle - along) * ray.direction;
     return march_lamplight_seen(lamp, ray, unit, m, away, length(away), share * mean, weight, weight_scaled, first);
 }
-
-#endif

@@ -1,9 +1,6 @@
 // raymarch_medium.glsl -- the medium as a march takes it: its optical depth in one channel or in three.
 //
 // Included by raymarch.glsl. RAYMARCH_GREY: all channels are equal, so optical depths are scalars.
-#ifndef TYN_RAYMARCH_MEDIUM_GLSL
-#define TYN_RAYMARCH_MEDIUM_GLSL
-
 #ifdef RAYMARCH_GREY
 #define spectrum float
 #define spectrum_of(v) (v).r
@@ -171,5 +168,3 @@ bool march_any(march_medium m)
     }
     return most > 0.0;
 }
-
-#endif

@@ -3,8 +3,6 @@
 // Included by raymarch.glsl. Few steps are near such a lamp, and few lamps near a step. So a ray knows the set of
 // lamps whose reach it crosses, its steps there wait until a chunk of them is done, and each lamp is read once a
 // chunk.
-#ifndef TYN_RAYMARCH_NEAR_GLSL
-#define TYN_RAYMARCH_NEAR_GLSL
 
 const int MARCH_NEAR_STEPS = raymarch_num_near > 0u ? 8 : 1; // that wait
 const float MARCH_NEAR_ANGLE = 0.35; // steps are cut so that a lamp sees the pieces under no more than this
@@ -138,5 +136,3 @@ vec3 march_near_light(march_near near, march_lamps ray, march_medium unit, march
     }
     return sum;
 }
-
-#endif

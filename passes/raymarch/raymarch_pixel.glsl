@@ -1,11 +1,9 @@
 // raymarch_pixel.glsl -- the rays of one pixel and what is stored of them.
 //
 // Include after raymarch.glsl, background.glsl, surface_samples.glsl, glow.glsl and display.glsl.
-#ifndef TYN_RAYMARCH_PIXEL_GLSL
-#define TYN_RAYMARCH_PIXEL_GLSL
-
 // Pixel of a thread of an 8x8 group, so that any 8 threads in a row are a block of 4x2 pixels, whose
 // rays take about equally many steps.
+
 uvec2 pixel_of_thread(uvec2 group, uint i)
 {
     return group * 8u + uvec2((i & 3u) | (i >> 1 & 4u), (i >> 2 & 1u) | (i >> 3 & 6u));
@@ -234,5 +232,3 @@ void shade_pixel(ivec2 pixel)
     }
     store_pixel(pixel, sum, 1.0 / float(num_rays));
 }
-
-#endif

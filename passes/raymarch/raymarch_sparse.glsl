@@ -9,11 +9,9 @@
 // in the middle of a pixel, and each pixel is marched once at most.
 //
 // Of a function with the second difference b between nodes, linear interpolation is off by b / 8 at most.
-#ifndef TYN_RAYMARCH_SPARSE_GLSL
-#define TYN_RAYMARCH_SPARSE_GLSL
-
 // Bounds of the error of linear interpolation, relative to what is seen in the cell: of the first grid, between whose nodes details
 // may be missed, and of one that refines it. Cubics are far less off where the light is smooth.
+
 const float SPARSE_TOLERANCE_FIRST = 0.018, SPARSE_TOLERANCE = 0.04;
 // Relative error of a ray's length x. The light of fog of depth t, 1 - e^-t, changes by x t e^-t with it: 1.1 % at most.
 const float SPARSE_DISTANCE_TOLERANCE = 0.03;
@@ -361,5 +359,3 @@ void sparse_main(uint i, ivec2 at)
         }
     }
 }
-
-#endif

@@ -1,8 +1,6 @@
 // raymarch_suns.glsl -- what lights see of a view ray, and the light of suns that a step of it scatters to the eye.
 //
 // Included by raymarch.glsl.
-#ifndef TYN_RAYMARCH_SUNS_GLSL
-#define TYN_RAYMARCH_SUNS_GLSL
 
 const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
 const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
@@ -200,5 +198,3 @@ march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, f
     shadow.lit = lit ? shadow.lit | mask : shadow.lit & ~mask;
     return march_lit(sum, s + 0.5 * moment / max(sum, 1e-30));
 }
-
-#endif

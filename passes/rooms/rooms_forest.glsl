@@ -3,8 +3,6 @@
 //
 // Element i holds how far its parent is before it: 0 for the first of a set. Links go to earlier elements only, so
 // that the first of a set does not depend on the order in which sets are joined.
-#ifndef ROOMS_FOREST_GLSL
-#define ROOMS_FOREST_GLSL
 #extension GL_KHR_memory_scope_semantics : require
 
 layout(binding = 0, scalar) coherent buffer forest_buffer
@@ -46,5 +44,3 @@ void rooms_join(uint a, uint b)
         b = rooms_first(low);
     }
 }
-
-#endif

@@ -4,8 +4,6 @@
 // times its size: the density of places falls with the distance d from a box of longest side L as 1 / (1 + (d / L)^2). Within a
 // triangle places follow a curve (vpl_elements.glsl: Sierpinski's) that halves it again and again, and of two halves each gets
 // its share by where its middle is ("hierarchical sample warping", Clarberg et al. 2005).
-#ifndef RSM_SKY_PLACES_GLSL
-#define RSM_SKY_PLACES_GLSL
 #include "shaders/light/near_box.glsl"
 
 const int RSM_SKY_HALVINGS = 20;
@@ -79,5 +77,3 @@ vec3 rsm_sky_place(vec3 a, vec3 b, vec3 c, float u, out float density)
     }
     return rsm_sky_middle(t);
 }
-
-#endif

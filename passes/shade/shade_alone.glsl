@@ -1,7 +1,5 @@
 // shade_alone.glsl -- lists of what takes all VPLs itself, as neighbours do not tell of its light: blocks of pixels, for
 // shade_places.comp; then pixels with such pieces of surface, for shade_alone.comp. Order does not matter.
-#ifndef SHADE_ALONE_GLSL
-#define SHADE_ALONE_GLSL
 #include "shaders/surfaces/gbuffer_edges.glsl"
 
 // SHADE_ALONE_TAKEN: the list is gone through; else added to.
@@ -35,6 +33,4 @@ void shade_list_alone(ivec2 pixel, uint samples, uint many)
     atomicMax(alone_count.groups.y, groups.y);
     atomicMax(alone_count.groups.z, 1u);
 }
-#endif
-
 #endif

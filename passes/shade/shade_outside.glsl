@@ -4,8 +4,6 @@
 // of every edge times the cosine between the normals of its plane and of the surface, with the mean of their radiance
 // as it is from there. Where a face goes below the surface's plane its contour goes along the horizon, above which
 // that is half the angle.
-#ifndef TYN_SHADE_OUTSIDE_GLSL
-#define TYN_SHADE_OUTSIDE_GLSL
 #include "shade_faces.h"
 
 // Of an edge between unit vectors in front of the surface. The angle over its sine is a rational fit within 4e-5 of it
@@ -126,5 +124,3 @@ vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
     }
     return sum;
 }
-
-#endif

@@ -2,8 +2,6 @@
 // light of the lattice, or of the sky where that is not.
 //
 // Samples of a pixel on one piece of surface are shaded together.
-#ifndef TYN_SHADE_PIECE_GLSL
-#define TYN_SHADE_PIECE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
 #include "shaders/common/counters.h"
@@ -203,5 +201,3 @@ vec3 smooth_light_beside(shade_point p, vec2 at, out bool alone)
     alone = near || sum.a < SHADE_ALIKE_BESIDE || shade_side == 1;
     return sum.rgb / max(sum.a, 1e-37);
 }
-
-#endif

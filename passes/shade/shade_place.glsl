@@ -1,6 +1,4 @@
 // shade_place.glsl -- where light of VPLs and of the lattice is taken for a block of pixels.
-#ifndef SHADE_PLACE_GLSL
-#define SHADE_PLACE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
 
@@ -37,5 +35,3 @@ bool shade_near(shade_point p, ivec2 block, float nearest)
     float reach = SHADE_VPL_NEAR * shade_footprint_of(p, vec4(block, block + 1) * float(shade_step)).width / float(shade_step);
     return nearest < reach * reach;
 }
-
-#endif

@@ -2,8 +2,6 @@
 //
 // A VPL's map shows what is in its way up to a few degrees: where a wall that is seen at a slant hides a surface behind
 // it, it may miss it. Rooms miss nothing that is closed.
-#ifndef SHADE_ROOMS_GLSL
-#define SHADE_ROOMS_GLSL
 #include "shade.glsl"
 
 const int SHADE_ROOM_STEPS = 8;
@@ -36,5 +34,3 @@ uint shade_room_of(vec3 p)
     }
     return room;
 }
-
-#endif

@@ -1,6 +1,4 @@
 // shade_several.glsl -- the pieces of surface in a pixel that shows several.
-#ifndef SHADE_SEVERAL_GLSL
-#define SHADE_SEVERAL_GLSL
 #include "shade.glsl"
 #define GEOMETRY_AT (SHADE_PIECE_AT + 3) // after the binding of the picture and those of shade_alone.glsl
 #define MATERIALS_AT (GEOMETRY_AT + 4)
@@ -56,5 +54,3 @@ vec4 part_of(ivec2 corner, uint members)
     }
     return part / float(shade_samples);
 }
-
-#endif

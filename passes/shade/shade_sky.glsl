@@ -1,8 +1,6 @@
 // shade_sky.glsl -- the sky's light on a place of a surface: all directions, past what their maps show
 // and through the medium. Include after shade.glsl and shade_part.glsl, and define
 // SHADE_SKY_AT, the first of four bindings.
-#ifndef SHADE_SKY_GLSL
-#define SHADE_SKY_GLSL
 #define SKY_MAPS_AT SHADE_SKY_AT
 #define COLUMNS_AT (SHADE_SKY_AT + 2)
 #define COLUMNS_STORAGE
@@ -54,5 +52,3 @@ vec3[SHADE_MANY] shade_sky(shade_point p[SHADE_MANY], vec4 part[SHADE_MANY], uin
     }
     return sum;
 }
-
-#endif

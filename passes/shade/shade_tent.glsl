@@ -4,8 +4,6 @@
 // Every place of the pattern is met once in `shade_side` blocks. Between two blocks of one place the light of
 // its VPLs is taken to be linear: the two nearest count in proportion to how near they are. (The nearest alone would
 // show as squares wherever one VPL is much of the light.) Of the two, blocks of other surfaces do not count.
-#ifndef SHADE_TENT_GLSL
-#define SHADE_TENT_GLSL
 #extension GL_EXT_control_flow_attributes : require
 
 // The sum at `block`, whose own part is `here`; `step` to its neighbours. Not whole where most places of the pattern
@@ -51,5 +49,3 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
     sum.whole = here.whole && 2 * met > shade_side;
     return sum;
 }
-
-#endif

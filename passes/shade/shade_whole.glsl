@@ -1,6 +1,4 @@
 // shade_whole.glsl -- the point that a pixel on one piece of surface is shaded at.
-#ifndef SHADE_WHOLE_GLSL
-#define SHADE_WHOLE_GLSL
 #include "shade.glsl"
 
 shade_point shade_whole(ivec2 pixel, gbuffer_facing seen)
@@ -15,5 +13,3 @@ shade_point shade_whole(ivec2 pixel, gbuffer_facing seen)
     off = (off - dot(off, seen.facet) * seen.facet) / float(shade_samples * shade_samples);
     return shade_point(at + off, seen.normal, seen.facet);
 }
-
-#endif

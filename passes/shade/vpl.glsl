@@ -1,6 +1,4 @@
 // vpl.glsl -- light of a VPL on a surface. No bindings.
-#ifndef TYN_VPL_GLSL
-#define TYN_VPL_GLSL
 #include "shaders/beams/radial_args.h"
 
 // Irradiance on a surface at p with the normal n (M), per intensity along the light's axis, 1/m^2 x sr.
@@ -45,5 +43,3 @@ float vpl_irradiance(light_block light, vec3 p, vec3 n)
     float most = (0.5 + 0.5 * facing) * per_radius * per_radius;
     return lit ? clamp(E * unit * unit, 0.0, most) : 0.0;
 }
-
-#endif

@@ -11,10 +11,8 @@
 // (within solids it is dark exactly); where there are others they do not matter. A place in the dark may be in
 // another solid: then one closer to the surface is tried, and cells farther around. Where it is known which room
 // (rooms.h) the surface is in, cells of other rooms do not count.
-#ifndef TYN_WALLS_IRRADIANCE_GLSL
-#define TYN_WALLS_IRRADIANCE_GLSL
-
 // Measured: docs/measurements.md, "Constants".
+
 const float WALLS_BEHIND = 1e-3;   // what cells behind one wall count
 const float WALLS_FEW = 0.02;      // the least share of a place's cells that tells that it is dark
 const float WALLS_RISE = 0.2;      // cell edges in front of the surface's plane over which a cell comes to count
@@ -115,5 +113,3 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
     }
     return irradiance;
 }
-
-#endif

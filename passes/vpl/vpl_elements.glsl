@@ -1,8 +1,6 @@
 // vpl_elements.glsl -- what may become a VPL: texels of reflective shadow maps, sides of triangles.
 //
 // Bindings 0 to 10.
-#ifndef TYN_VPL_ELEMENTS_GLSL
-#define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/light/hilbert.glsl"
@@ -162,5 +160,3 @@ uint vpl_pieces(vpl_block block)
 {
     return block.index < plan.front ? 1u : 8u;
 }
-
-#endif

@@ -1,8 +1,6 @@
 // wall_light_rooms.glsl -- the room of a cell, as the first virtual point light (VPL) that shines there.
 //
 // Include with the specialization constant `rooms`; define LATTICE_ROOMS, and WALL_LIGHT_FIRST: binding of the buffer.
-#ifndef TYN_WALL_LIGHT_ROOMS_GLSL
-#define TYN_WALL_LIGHT_ROOMS_GLSL
 #include "shaders/walls/lattice_rooms.glsl"
 
 TYN_READ(WALL_LIGHT_FIRST, first, uint first[]); // by room
@@ -12,5 +10,3 @@ uint first_vpl(uint cell)
 {
     return first[rooms == 1 ? texelFetch(rooms_words, int(TYN_ROOMS_OF_CELL(cell))).x : TYN_ROOMS_OUTSIDE];
 }
-
-#endif

@@ -1,6 +1,4 @@
 // walls_texture.glsl -- mean colour of a surface around a point. Define MATERIALS_AT (surfaces.glsl).
-#ifndef TYN_WALLS_TEXTURE_GLSL
-#define TYN_WALLS_TEXTURE_GLSL
 #include "shaders/surfaces/surface_texture.glsl"
 
 // `texels_per_area`: of level 0 within the area to be averaged over.
@@ -16,5 +14,3 @@ vec3 walls_texture(uint index, vec2 uv, float texels_per_area)
     }
     return surface_texel(first, size, uvec2(1u), ivec2(uv * vec2(size))); // held to the last one
 }
-
-#endif

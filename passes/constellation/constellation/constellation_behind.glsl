@@ -2,8 +2,6 @@
 //
 // Include after surface_samples.glsl, host_depth.glsl and background.glsl. A pixel has one ray. What is before a surface
 // shines for all of the pixel, what is behind it only for the share of the pixel in which the surface is not.
-#ifndef TYN_CONSTELLATION_BEHIND_GLSL
-#define TYN_CONSTELLATION_BEHIND_GLSL
 
 const uint BEHIND_MAX = 4u;
 
@@ -61,5 +59,3 @@ float behind_end(behind b)
     }
     return end;
 }
-
-#endif

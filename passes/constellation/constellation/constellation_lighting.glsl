@@ -1,8 +1,6 @@
 // constellation_lighting.glsl -- the light that a sample scatters towards the eye: the sum over lights of Program 1.
 //
 // Include after constellation_medium.glsl, camera.glsl, shadow.glsl and light_list.glsl.
-#ifndef TYN_CONSTELLATION_LIGHTING_GLSL
-#define TYN_CONSTELLATION_LIGHTING_GLSL
 
 const float CONSTELLATION_DARK = 20.0; // optical depth behind which a light is not followed: e^-20 = 2e-9
 const int CONSTELLATION_AT_ONCE = 2;   // steps of a shadow ray in a turn of its loop
@@ -77,5 +75,3 @@ vec3 scattered_light(vec3 p, vec3 view, sample_point s)
     }
     return args.scale * sum;
 }
-
-#endif

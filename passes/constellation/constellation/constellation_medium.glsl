@@ -1,9 +1,6 @@
 // constellation_medium.glsl -- the medium at a sample, from the texture that has the distance map beside it.
 //
 // Include after medium.glsl. What is summed along shadow rays is density (mode DENSITY) or sigma_t of each channel.
-#ifndef TYN_CONSTELLATION_MEDIUM_GLSL
-#define TYN_CONSTELLATION_MEDIUM_GLSL
-
 #ifdef TYN_DENSITY
 #define MATTER float
 
@@ -88,5 +85,3 @@ bool is_empty(MATTER m, vec3 uvw)
 #endif
     return !(most > 0.0);
 }
-
-#endif

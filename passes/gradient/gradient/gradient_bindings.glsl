@@ -1,6 +1,4 @@
 // gradient_bindings.glsl -- what kernels that follow light have bound in common, and how they do it.
-#ifndef TYN_GRADIENT_BINDINGS_GLSL
-#define TYN_GRADIENT_BINDINGS_GLSL
 #include "gradient_args.h"
 #include "shaders/common/counters.h"
 TYN_ARGS(gradient_args args);
@@ -22,4 +20,3 @@ TYN_UPDATE(15, counters, counters_block counters);
 #include "passes/light_list/common/light_list.glsl"
 #include "passes/light_list/common/light_shades_args.h"
 #include "gradient_light.glsl"
-#endif

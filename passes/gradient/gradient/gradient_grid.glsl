@@ -2,8 +2,6 @@
 //
 // Include after medium.glsl; `args` is struct gradient_args. Points are the centres of cells that fill the medium's box, at most a
 // radius apart along each axis, so that the sphere of that radius around the nearest one has every point of the box.
-#ifndef TYN_GRADIENT_GRID_GLSL
-#define TYN_GRADIENT_GRID_GLSL
 
 struct gradient_grid {
     ivec3 size;
@@ -62,5 +60,3 @@ vec3 gradient_extrapolated(vec3 light, vec3 change)
     const vec3 exponential = light * exp(min(change / max(light, 1e-30), GRADIENT_MOST));
     return mix(exponential, light + change, bvec3(args.linear != 0u));
 }
-
-#endif

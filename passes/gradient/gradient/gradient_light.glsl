@@ -5,8 +5,6 @@
 // counts as passing, and first scattering has the whole phase function over 1 - f (Nakajima and Tanaka 1988).
 //
 // Include after gradient_bindings.glsl's other files.
-#ifndef TYN_GRADIENT_LIGHT_GLSL
-#define TYN_GRADIENT_LIGHT_GLSL
 
 layout(constant_id = 1) const uint gradient_features = 0u;
 
@@ -202,5 +200,3 @@ vec3 finite_light(vec3 light)
     }
     return light;
 }
-
-#endif

@@ -4,8 +4,6 @@
 //   (1 - b) gamma_j [(1 - lambda) (P + 3 m_j.F) + lambda_s (P + 3 g' m_j.F)]
 // of the power in a cell; g' (beyond the paper, where it is 0) is the mean cosine that delta scaling leaves. So a cell
 // needs to write only (P, F) weighted with these factors, once for each length of links.
-#ifndef TYN_LPV_LINKS_GLSL
-#define TYN_LPV_LINKS_GLSL
 #include "lpv_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"
 #include "shaders/walls/walls_links.glsl"
@@ -81,5 +79,3 @@ vec4 lpv_deposit(float power, uint link, vec3 step)
     uint shell = lpv_shell(link);
     return power * vec4(1.0, LPV_COSINE[shell] / LPV_LENGTH[shell] * step);
 }
-
-#endif

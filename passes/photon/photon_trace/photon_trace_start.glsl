@@ -2,8 +2,6 @@
 //
 // Of all photons together places and lights lie evenly: they are terms of the Kronecker sequence of Roberts (2018), the
 // n-th photon's of all generations.
-#ifndef PHOTON_TRACE_START_GLSL
-#define PHOTON_TRACE_START_GLSL
 #include "shaders/path/path_entry.glsl"
 
 float start_emitters()
@@ -130,5 +128,3 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
     p.path.vertex = draw_entry(p.path.way, vec3(even.xy, min(left / max(sky, 1e-37), 0.9999999)));
     p.power *= sum3(faces_across(p.path.way)) * total / max(sky, 1e-37);
 }
-
-#endif

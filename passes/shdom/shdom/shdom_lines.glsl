@@ -4,8 +4,6 @@
 // through the middle of each cell. It meets the following slices where the direction takes it; where it leaves the box at a
 // side it comes in again at the opposite one, as another line without light. So each slice has as many lines as cells, as far
 // apart as those.
-#ifndef TYN_SHDOM_LINES_GLSL
-#define TYN_SHDOM_LINES_GLSL
 
 struct shdom_lines {
     ivec3 axes;  // along, and the two across
@@ -37,5 +35,3 @@ int shdom_cell(shdom_lines lines, ivec3 dims, int slice, ivec2 at)
     c[lines.axes.z] = at.y;
     return (c.z * dims.y + c.y) * dims.x + c.x;
 }
-
-#endif
