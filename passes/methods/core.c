@@ -2,15 +2,10 @@
 // method.
 #define TYN_BUILT_IN tyn_built_in_core
 #include <tyndall/extend/plugin.h>
-#include "passes/halve_depth/halve_depth.h"
+#include "passes/passes.h"
 
-#define PASS(name) extern const tyn_pass_desc tyn_pass_##name;
-#include "passes/pass_list.h"
-#undef PASS
-#define PASS(name) &tyn_pass_##name,
-static const tyn_pass_desc *const passes[] = {
-#include "passes/pass_list.h"
-    NULL};
+#define ROW(name) &tyn_pass_##name,
+static const tyn_pass_desc *const passes[] = {TYN_PASSES(ROW) NULL};
 
 // The march ends at a depth of its own size.
 static void halve_depth(tyn_graph *g, tyn_scene_refs *refs)

@@ -1,13 +1,6 @@
 // path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
-#include "passes/path/path.h"
-#include "passes/path_probe/path_probe.h"
-#include "passes/path_balance/path_balance.h"
-#include "passes/path_fluxes/path_fluxes.h"
-#include "passes/path_distance/path_distance.h"
-#include "passes/gbuffer/gbuffer.h"
-#include "passes/guides/guides.h"
 #include <tyndall/extend/path_scene.h>
 #include "shaders/path/path_args.h"
 #include "passes/methods/view/view.h"
@@ -186,7 +179,6 @@ static tyn_result check_fluxes(const tyn_job *job)
     const struct medium_block *m = &frame->medium;
     const struct env_block *env = &frame->environment;
     const char *wrong = NULL;
-    bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     if (frame->empty && !frame->num_triangles) {
         wrong = "there is no medium and no surface";
     } else if (frame->lights.num_lamps) {
@@ -196,7 +188,7 @@ static tyn_result check_fluxes(const tyn_job *job)
     } else if (frame->emissive || job->refs.emitters.resource) {
         wrong = "media or surfaces emit; only suns and the environment may shine (balance knows "
                 "emission)";
-    } else if (!frame->lights.num_directional && !sky) {
+    } else if (!frame->lights.num_directional && !tyn_is_lit(env->radiance)) {
         wrong = "there is neither a sun nor an environment";
     } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
         wrong = "the medium repeats along all axes: no light enters it";
@@ -236,19 +228,15 @@ static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 static tyn_result check_repeat(const tyn_job *job)
 {
     const struct medium_block *m = &job->frame->medium;
-    const struct shape_block *s = &job->frame->shapes[0];
-    bool repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
-    for (int i = 0; repeat && i < 9; i++) {
-        if (i / 3 != i % 3 && fabsf(s->rows[i / 3][i % 3]) * m->extent[i % 3] > 1e-4f) {
-            tyn_log_print(job->log, TYN_LOG_ERROR,
-                          "shape 0 repeats and is sheared; the axes of a periodic box must be at "
-                          "right angles");
-            return TYN_ERR_UNSUPPORTED;
-        }
+    if (tyn_is_periodic(job->frame) && tyn_is_sheared(job->frame)) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "shape 0 repeats and is sheared; the axes of a periodic box must be at "
+                      "right angles");
+        return TYN_ERR_UNSUPPORTED;
     }
     float lo[3], hi[3];
     tyn_surfaces_box(job->frame, lo, hi);
-    for (int a = 0; repeat && a < 3; a++) {
+    for (int a = 0; a < 3; a++) {
         if (m->repeat[a] && hi[a] - lo[a] > 1.0001f * m->extent[a]) {
             tyn_log_print(job->log, TYN_LOG_ERROR,
                           "surfaces reach over %g m along the medium's axis %d, on which it "

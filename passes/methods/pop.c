@@ -6,14 +6,13 @@
 // medium shows of it is smeared for each pixel (glow). What has left the beams and the ordinates goes
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
-#include "passes/methods/pop_limits.h"
 #include <tyndall/extend/method.h>
-#include "passes/methods/solve/lattice.h"
 #include "passes/methods/view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>
+
+extern const tyn_limit tyn_limits_pop[]; // pop_limits.c
 
 static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE;
 
@@ -47,17 +46,6 @@ static bool is_thin(const tyn_frame_scene *frame)
     return scattering * m->max_density * longest < thin_depth;
 }
 
-// Are the axes of the only shape not those of M?
-static bool is_sheared(const tyn_frame_scene *frame)
-{
-    bool sheared = false;
-    for (int i = 0; i < 9; i++) {
-        float across = fabsf(frame->shapes[0].rows[i / 3][i % 3]) * frame->medium.extent[i % 3];
-        sheared = sheared || (i / 3 != i % 3 && across > 1e-4f);
-    }
-    return sheared;
-}
-
 // Do all surfaces stand in one period, as those do that repeat with the medium?
 static bool fit_a_period(const tyn_frame_scene *frame)
 {
@@ -83,7 +71,7 @@ static tyn_result check_repeat(const tyn_job *job)
         return TYN_OK;
     } else if (axes == 3) {
         problem = "repeats along all three axes; no light can come in from anywhere";
-    } else if (is_sheared(job->frame)) {
+    } else if (tyn_is_sheared(job->frame)) {
         problem = "repeats and is sheared; the axes of a periodic box must be at right angles";
     } else if (job->frame->environment.has_map) {
         problem = "repeats under an environment map; give the environment as a constant radiance";

@@ -2,7 +2,6 @@
 //
 // Errors are those of boxes in one sun against `path` (docs/choosing.md, docs/stress.md).
 #include <tyndall/extend/limits.h>
-#include "passes/methods/pop_limits.h"
 
 #define COUNT(curve) (sizeof(curve) / sizeof(curve)[0])
 

@@ -1,5 +1,4 @@
 // single.c -- method "single": light that has scattered exactly once, and emission.
-#include "passes/methods/light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/methods/view/view.h"

@@ -140,7 +140,7 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
     }
     p->grey = p->grey && !p->albedo;
     p->tabled = job->refs.phases.resource != 0;
-    p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
+    p->repeat = tyn_is_periodic(frame);
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
     p->keep_few = job->cpu_device;

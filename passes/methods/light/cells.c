@@ -1,9 +1,17 @@
 // cells.c -- the lattice: its cells, and the light of all sources that arrives there unscattered.
 #include "passes/methods/light/sources.h"
-#include "passes/methods/light/walls.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
+
+void tyn_put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_t dims[3])
+{
+    const tyn_extent size = tyn_lattice_dims(shape->extent, shape->cells);
+    dims[0] = size.x;
+    dims[1] = size.y;
+    dims[2] = size.z;
+    memcpy(extent, shape->extent, sizeof shape->extent);
+}
 
 static bool emits(const tyn_surface_material *m)
 {
@@ -101,13 +109,9 @@ bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3]
 
 static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
-    tyn_extent dims = tyn_lattice_dims(s->lattice.shape.extent, s->lattice.shape.cells);
     tyn_columns_params params;
     tyn_settings_params(job->settings, &tyn_pass_columns, &params);
-    memcpy(params.extent, s->lattice.shape.extent, sizeof params.extent);
-    params.dims[0] = dims.x;
-    params.dims[1] = dims.y;
-    params.dims[2] = dims.z;
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     params.mode = job->frame->medium.mode;
     params.count = s->sky.count;
     tyn_medium_refs medium = s->medium;
@@ -123,13 +127,9 @@ static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 // What surfaces leave of the ordinates.
 static void add_seen(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
-    const tyn_extent dims = tyn_lattice_dims(s->lattice.shape.extent, s->lattice.shape.cells);
     tyn_sky_seen_params params;
     tyn_settings_params(job->settings, &tyn_pass_sky_seen, &params);
-    memcpy(params.extent, s->lattice.shape.extent, sizeof params.extent);
-    params.dims[0] = dims.x;
-    params.dims[1] = dims.y;
-    params.dims[2] = dims.z;
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     params.count = s->sky.count;
     params.fan = s->sky.fan;
     tyn_ref refs[TYN_MAX_PORTS] = {[SKY_SEEN_PORT_ORDINATES] = s->sky.ordinates,

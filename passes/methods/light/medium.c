@@ -1,6 +1,17 @@
 // medium.c -- the media as grids.
 #include "passes/methods/light/sources.h"
+#include <math.h>
 #include <string.h>
+
+bool tyn_is_sheared(const tyn_frame_scene *frame)
+{
+    bool sheared = false;
+    for (int i = 0; i < 9; i++) {
+        float across = fabsf(frame->shapes[0].rows[i / 3][i % 3]) * frame->medium.extent[i % 3];
+        sheared = sheared || (i / 3 != i % 3 && across > 1e-4f);
+    }
+    return sheared;
+}
 
 void tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {

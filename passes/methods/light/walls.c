@@ -1,17 +1,8 @@
 // walls.c -- surfaces as the lattice sees them.
-#include "passes/methods/light/walls.h"
+#include "passes/methods/light/sources.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
-
-static void put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_t dims[3])
-{
-    const tyn_extent size = tyn_lattice_dims(shape->extent, shape->cells);
-    dims[0] = size.x;
-    dims[1] = size.y;
-    dims[2] = size.z;
-    memcpy(extent, shape->extent, sizeof shape->extent);
-}
 
 static void add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
@@ -20,7 +11,7 @@ static void add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     }
     tyn_walls_params params;
     tyn_settings_params(job->settings, &tyn_pass_walls, &params);
-    put_lattice(&s->lattice.shape, params.extent, params.dims);
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_connect(refs, WALLS_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, WALLS_PORT_MATERIALS, job->refs.materials);
@@ -53,7 +44,7 @@ static void add_beyond(tyn_graph *g, const tyn_job *job, tyn_sources *s)
         !stand_around(job->frame, params.reach)) {
         return;
     }
-    put_lattice(&s->lattice.shape, params.extent, params.dims);
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     params.shining = s->walls.light.resource != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALLS_BEYOND_PORT_INNER_LINKS] = s->walls.cut.wall_links,
@@ -72,7 +63,7 @@ static void add_rooms(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     }
     tyn_rooms_params params;
     tyn_settings_params(job->settings, &tyn_pass_rooms, &params);
-    put_lattice(&s->lattice.shape, params.extent, params.dims);
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [ROOMS_PORT_WALL_LINKS] = s->walls.cut.wall_links,
         [ROOMS_PORT_VPLS] = s->surface_light.vpls.vpls,
@@ -101,7 +92,7 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
     tyn_settings_params(job->settings, &tyn_pass_wall_light, &params);
     params.mode = job->frame->medium.mode;
     params.num_suns = num_suns;
-    put_lattice(&s->lattice.shape, params.extent, params.dims);
+    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALL_LIGHT_PORT_MEDIUM] = job->refs.medium,
         [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,

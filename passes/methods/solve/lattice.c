@@ -1,5 +1,6 @@
-// lattice.c -- see lattice.h.
-#include "passes/methods/solve/lattice.h"
+// lattice.c -- the solver of method "pop": one lattice for everything that has scattered.
+#include <tyndall/extend/field.h>
+#include "passes/passes.h"
 #include <tyndall/registry.h>
 #include <string.h>
 

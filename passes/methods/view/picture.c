@@ -90,7 +90,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->kind = kind_of_shapes(frame, block->num_shapes);
     params->closed = !sunlight_enters_through_medium(frame, in->sources->num_suns) ||
                      block->size[0] * block->size[1] * block->size[2] == 1;
-    params->repeat = block->repeat[0] || block->repeat[1] || block->repeat[2];
+    params->repeat = tyn_is_periodic(frame);
     if (!frame->open_faces || params->repeat) {
         params->antialias = 0; // the box that the rays may miss has nothing at its faces
     }
@@ -200,16 +200,8 @@ tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_input
         tyn_connect(refs, RAYMARCH_PORT_SHADOW_ATLAS, in->sources->shadows);
     }
     tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
-    static const struct {
-        tyn_output output;
-        uint8_t port;
-    } images[] = {
-        {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE},
-        {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE},
-    };
-    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
-        tyn_job_output(g, job, images[i].output, refs[images[i].port]);
-    }
+    tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[RAYMARCH_PORT_SINGLE]);
+    tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[RAYMARCH_PORT_MULTIPLE]);
     tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
     return (tyn_picture){refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE],
                          refs[RAYMARCH_PORT_DEPTH]};

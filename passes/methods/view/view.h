@@ -2,7 +2,6 @@
 #pragma once
 #include <tyndall/extend/view.h>
 #include "passes/methods/light/sources.h"
-#include "passes/methods/view/passes.h"
 
 // Albedo and normal of the surfaces that the camera sees, where the job wants them.
 void tyn_add_guides(tyn_graph *g, const tyn_job *job);
