@@ -4,11 +4,11 @@ import re
 import sys
 from pathlib import Path
 
-headers = Path(sys.argv[1])
+headers, calls = Path(sys.argv[1]), Path(sys.argv[2])
 # Of hosts and of the loader, not of what a pass or a method does; tyn_job_warn is made by TYN_PLUGIN, for its arguments vary.
 others = {"tyn_method_register", "tyn_picture_hook_register", "tyn_pass_register", "tyn_num_passes", "tyn_pass_at", "tyn_job_warn"}
 
-in_table = set(re.findall(r"^    (?:X\([^,]+, |V\()(tyn_\w+)", (headers / "extend/calls.h").read_text(), re.M))
+in_table = set(re.findall(r"^    (?:X\([^,]+, |V\()(tyn_\w+)", calls.read_text(), re.M))
 missing = []
 for header in [headers / "pass.h", *sorted((headers / "extend").glob("*.h"))]:
     for name in re.findall(r"^TYN_API [^;(]*?(tyn_\w+)\(", header.read_text(), re.M):

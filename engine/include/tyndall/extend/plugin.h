@@ -4,7 +4,7 @@
 // is compiled with -DTYN_PLUGIN_BUILD (pkg-config's tyndall-plugin says so), links nothing of Tyndall (calls.h), and is
 // loaded by tyn_plugin_load, or `tyndall COMMAND --plugin FILE.so`. docs/writing-a-plugin.md walks through one.
 #pragma once
-#include "calls.h"
+#include <tyndall/extend/calls.h>
 #include <stdarg.h>
 #include <stdio.h>
 
