@@ -11,6 +11,9 @@
 #include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = LATTICE_COARSE_GROUP) in;
+#define WORKGROUP_SIZE LATTICE_COARSE_GROUP
+#define WORKGROUP_SUM vec2
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(lattice_level_args args); // level: the first that is solved here
 layout(binding = 2) uniform samplerBuffer rhs_words;
 TYN_UPDATE(3, correction, float correction_out[]);
@@ -23,7 +26,6 @@ layout(constant_id = 0) const uint walls = 0;
 shared float correction[LATTICE_COARSE_CELLS * 11 / 8];
 shared float rhs[LATTICE_COARSE_CELLS * 3 / 8];
 
-shared vec2 sums[LATTICE_COARSE_GROUP];
 
 // On the coarsest level, at most 4^3 cells, over-relaxed.
 const uint COARSEST_RELAXATIONS = 8;
@@ -147,16 +149,8 @@ float step_length()
         }
         sum += vec2(r * e, k.absorption * e * e + steps * (dot(k.lo, lo * lo) + dot(k.hi, hi * hi)));
     }
-    barrier();
-    sums[me] = sum;
-    for (uint half_n = LATTICE_COARSE_GROUP / 2; half_n > 0; half_n /= 2) {
-        barrier();
-        if (me < half_n) {
-            sums[me] += sums[me + half_n];
-        }
-    }
-    barrier();
-    return sums[0].y > 0.0 ? clamp(sums[0].x / sums[0].y, 0.0, 4.0) : 1.0;
+    sum = workgroup_total(sum);
+    return sum.y > 0.0 ? clamp(sum.x / sum.y, 0.0, 4.0) : 1.0;
 }
 
 void interpolate_from_next(float scale)

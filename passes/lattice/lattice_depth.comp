@@ -5,11 +5,13 @@
 #include "shaders/common/quotient.glsl"
 
 layout(local_size_x = LATTICE_DEPTH_GROUP) in; // one workgroup
+#define WORKGROUP_SIZE LATTICE_DEPTH_GROUP
+#define WORKGROUP_SUM float
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(lattice_args args);
 layout(binding = 0) uniform sampler3D cells;
 TYN_UPDATE(1, launches, uint launches[3 * LATTICE_MAX_LAUNCHES]); // workgroups, as indirect dispatches read them
 
-shared float sums[LATTICE_DEPTH_GROUP];
 
 const float THICK = 5.0; // mean sigma_s' times the longest side
 
@@ -22,16 +24,9 @@ void main()
     for (uint i = me; i < count; i += LATTICE_DEPTH_GROUP) {
         sum += texelFetch(cells, quotient_place(i, size), 0).x;
     }
-    sums[me] = sum;
-    for (uint half_n = LATTICE_DEPTH_GROUP / 2; half_n > 0; half_n /= 2) {
-        barrier();
-        if (me < half_n) {
-            sums[me] += sums[me + half_n];
-        }
-    }
-    barrier();
+    sum = workgroup_total(sum);
     float longest = args.dx * float(max(args.dims.x, max(args.dims.y, args.dims.z)));
-    if (me < LATTICE_MAX_LAUNCHES && sums[0] / float(count) * longest <= THICK) {
+    if (me < LATTICE_MAX_LAUNCHES && sum / float(count) * longest <= THICK) {
         launches[3 * me] = 0u;
     }
 }

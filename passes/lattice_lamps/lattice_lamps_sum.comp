@@ -15,13 +15,14 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
+#define WORKGROUP_SIZE LATTICE_SUN_GROUP
+#define WORKGROUP_SUM vec2
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(lattice_lamps_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D unshadowed;
 TYN_WRITE(7, power, lattice_lamp_power power[]);
 #include "lattice_lamps.glsl"
-
-shared vec4 sums[LATTICE_SUN_GROUP];
 
 float lost_at(uint n, vec3 away, float r, uint ch)
 {
@@ -76,17 +77,6 @@ float collided_in_cells(uint group, uint ch, float volume)
     return collided;
 }
 
-void reduce()
-{
-    for (uint half_n = LATTICE_SUN_GROUP / 2; half_n > 0; half_n /= 2) {
-        barrier();
-        if (gl_LocalInvocationIndex < half_n) {
-            sums[gl_LocalInvocationIndex] += sums[gl_LocalInvocationIndex + half_n];
-        }
-    }
-    barrier();
-}
-
 void main()
 {
     uint group = gl_WorkGroupID.x, ch = gl_WorkGroupID.y, me = gl_LocalInvocationIndex;
@@ -100,10 +90,7 @@ void main()
         for (uint i = me; i < count; i += LATTICE_SUN_GROUP) {
             sum += inside ? of_direction(n, i, side, ch) : of_face(n, i, side, ch);
         }
-        barrier(); // the last light's sum has been read
-        sums[me] = vec4(sum, 0.0, 0.0);
-        reduce();
-        vec2 total = sums[0].xy;
+        vec2 total = workgroup_total(sum);
         if (inside) { // the power is known
             float exact = light_lobe_integral(radials[n].light);
             total *= total.x > 0.0 ? exact / total.x : 0.0;
@@ -114,13 +101,11 @@ void main()
         lost += e * total.y;
     }
     float dx = lattice_box_of(medium.extent, ivec3(args.dims)).dx;
-    barrier();
-    sums[me] = vec4(collided_in_cells(group, ch, dx * dx * dx), 0.0, 0.0, 0.0);
-    reduce();
+    float collided = workgroup_total(vec2(collided_in_cells(group, ch, dx * dx * dx), 0.0)).x;
     if (me == 0u) {
         // Close to 1 where the pieces of the cells resolve the light; large where it is lost within a
         // fraction of one, or where the depth of the cells is bounded.
-        float collided = sums[0].x, scale = collided > 0.0 ? min(lost / collided, 1e6) : 1.0;
+        float scale = collided > 0.0 ? min(lost / collided, 1e6) : 1.0;
         power[group * args.channels + ch] = lattice_lamp_power(entering, emitted, lost, scale);
     }
 }

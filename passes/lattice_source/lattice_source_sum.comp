@@ -12,12 +12,13 @@
 #include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
+#define WORKGROUP_SIZE LATTICE_SUN_GROUP
+#define WORKGROUP_SUM vec2
+#include "shaders/common/workgroup.glsl"
 TYN_ARGS(lattice_source_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D sunlit;
 TYN_WRITE(7, power, lattice_power power[]);
-
-shared vec2 sums[LATTICE_SUN_GROUP]; // lost, collided
 
 const uint FACE_SAMPLES = 2; // per cell along each axis
 
@@ -62,22 +63,15 @@ void main()
 {
     uint sun = gl_WorkGroupID.x, ch = gl_WorkGroupID.y, me = gl_LocalInvocationIndex;
     float dx = lattice_box_of(medium.extent, ivec3(args.dims)).dx;
-    sums[me] = vec2(lost_through_exit_faces(sun, ch), collided_in_cells(sun, ch, dx * dx * dx));
-    for (uint half_n = LATTICE_SUN_GROUP / 2; half_n > 0; half_n /= 2) {
-        barrier();
-        if (me < half_n) {
-            sums[me] += sums[me + half_n];
-        }
-    }
-    barrier();
+    vec2 lost = workgroup_total(vec2(lost_through_exit_faces(sun, ch), collided_in_cells(sun, ch, dx * dx * dx)));
     if (me == 0) {
         vec3 extent = medium.extent, d = abs(beams[sun].direction);
         vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y) *
                      vec3(equal(medium.repeat, uvec3(0)));
         // Close to 1 where the sub-samples resolve the beam; large where it is lost within a
         // fraction of one, or where the depth of the cells is bounded.
-        float scale = sums[0].y > 0.0 ? min(sums[0].x / sums[0].y, 1e6) : 1.0;
+        float scale = lost.y > 0.0 ? min(lost.x / lost.y, 1e6) : 1.0;
         power[sun * args.channels + ch] =
-            lattice_power(dot(faces, d), sums[0].x, sums[0].y * scale, scale);
+            lattice_power(dot(faces, d), lost.x, lost.y * scale, scale);
     }
 }
