@@ -14,65 +14,25 @@ extern "C" {
 #define tyn_connect(refs, first, bundle) memcpy(&(refs)[first], &(bundle), sizeof(bundle))
 #define tyn_take(refs, first, bundle) memcpy(&(bundle), &(refs)[first], sizeof(bundle))
 
-typedef struct tyn_medium_refs {
-    tyn_ref TYN_MEDIUM(TYN_PORT_NAME, );
-} tyn_medium_refs;
+// The refs of a bundle as a struct; {0} in a scene without the things behind it.
+#define TYN_REFS(name, BUNDLE)                                                                     \
+    typedef struct name {                                                                          \
+        tyn_ref BUNDLE(TYN_PORT_NAME, );                                                           \
+    } name
 
-// {0} without suns.
-typedef struct tyn_beam_refs {
-    tyn_ref TYN_BEAMS(TYN_PORT_NAME, );
-} tyn_beam_refs;
-
-// {0} without lamps and virtual point lights.
-typedef struct tyn_radial_refs {
-    tyn_ref TYN_RADIALS(TYN_PORT_NAME, );
-} tyn_radial_refs;
-
-// {0} without ordinates.
-typedef struct tyn_column_refs {
-    tyn_ref TYN_COLUMNS(TYN_PORT_NAME, );
-} tyn_column_refs;
-
-// {0} without surfaces, or without lights.
-typedef struct tyn_shadow_refs {
-    tyn_ref TYN_SHADOWS(TYN_PORT_NAME, );
-} tyn_shadow_refs;
-
-// {0} without surfaces, or without ordinates.
-typedef struct tyn_sky_map_refs {
-    tyn_ref TYN_SKY_MAPS(TYN_PORT_NAME, );
-} tyn_sky_map_refs;
-typedef struct tyn_sky_seen_refs {
-    tyn_ref TYN_SKY_SEEN(TYN_PORT_NAME, );
-} tyn_sky_seen_refs;
-
-// {0} without surfaces near the media.
-typedef struct tyn_wall_refs {
-    tyn_ref TYN_WALLS(TYN_PORT_NAME, );
-} tyn_wall_refs;
-
-// {0} without surfaces that light reaches.
-typedef struct tyn_vpl_refs {
-    tyn_ref TYN_VPLS(TYN_PORT_NAME, );
-} tyn_vpl_refs;
-
-// {0} without surfaces, or without lights.
-typedef struct tyn_rsm_refs {
-    tyn_ref TYN_RSM(TYN_PORT_NAME, );
-} tyn_rsm_refs;
-
-// {0} without surfaces.
-typedef struct tyn_gbuffer_refs {
-    tyn_ref TYN_GBUFFER(TYN_PORT_NAME, );
-} tyn_gbuffer_refs;
-
-// {0} without surfaces; `nodes` also where they have no hierarchy.
-typedef struct tyn_geometry_refs {
-    tyn_ref TYN_GEOMETRY(TYN_PORT_NAME, );
-} tyn_geometry_refs;
-typedef struct tyn_material_refs {
-    tyn_ref TYN_MATERIALS(TYN_PORT_NAME, );
-} tyn_material_refs;
+TYN_REFS(tyn_medium_refs, TYN_MEDIUM);
+TYN_REFS(tyn_beam_refs, TYN_BEAMS);       // suns
+TYN_REFS(tyn_radial_refs, TYN_RADIALS);   // lamps, virtual point lights
+TYN_REFS(tyn_column_refs, TYN_COLUMNS);   // ordinates
+TYN_REFS(tyn_shadow_refs, TYN_SHADOWS);   // surfaces and lights
+TYN_REFS(tyn_sky_map_refs, TYN_SKY_MAPS); // surfaces and ordinates, as the next
+TYN_REFS(tyn_sky_seen_refs, TYN_SKY_SEEN);
+TYN_REFS(tyn_wall_refs, TYN_WALLS);         // surfaces near the media
+TYN_REFS(tyn_vpl_refs, TYN_VPLS);           // surfaces that light reaches
+TYN_REFS(tyn_rsm_refs, TYN_RSM);            // surfaces and lights
+TYN_REFS(tyn_gbuffer_refs, TYN_GBUFFER);    // surfaces
+TYN_REFS(tyn_geometry_refs, TYN_GEOMETRY);  // surfaces; `nodes`: their hierarchy
+TYN_REFS(tyn_material_refs, TYN_MATERIALS); // surfaces
 
 #ifdef __cplusplus
 }
