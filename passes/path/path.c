@@ -34,10 +34,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, PATH_PORT_QUEUE, 0);
     for (uint32_t first = 0; first < pixels; first += s.tile) {
         uint32_t num = pixels - first < s.tile ? pixels - first : s.tile;
-        struct path_args args = path_trace_args(p);
-        args.first = first;
-        args.num = num;
-        args.slots = slots;
+        const struct path_args args = path_trace_args(p, first, num, slots);
         TYN_DISPATCH(r, .kernel = KERNEL_TRACE, .cells = {num * slots, 1, 1}, .args = &args,
                      .spec = spec);
         struct path_resolve_args resolve = {

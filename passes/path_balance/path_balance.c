@@ -39,9 +39,7 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t threads = groups < p->threads ? groups : p->threads;
     tyn_rec_fill(r, PATH_BALANCE_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
-        struct path_args args = path_trace_args(p);
-        args.num = 1;
-        args.slots = threads;
+        struct path_args args = path_trace_args(p, 0, 1, threads);
         args.num_samples = groups * kinds;
         args.first_sample = (before + chunk) * args.num_samples;
         TYN_DISPATCH(r, .kernel = KERNEL_PATH_BALANCE, .cells = {threads, 1, 1}, .args = &args,

@@ -28,9 +28,7 @@ static void record(tyn_recorder *r, const void *params)
     spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE);
     tyn_rec_fill(r, PATH_FLUXES_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
-        struct path_args args = path_trace_args(p);
-        args.num = 1;
-        args.slots = p->threads;
+        struct path_args args = path_trace_args(p, 0, 1, p->threads);
         args.first_sample = p->first_sample + chunk * p->num_samples;
         TYN_DISPATCH(r, .kernel = KERNEL_PATH_FLUXES, .cells = {p->threads, 1, 1}, .args = &args,
                      .spec = spec);

@@ -32,10 +32,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, PATH_PROBE_PORT_COUNTERS, 0);
     for (uint32_t first = 0; first < points; first += s.tile) {
         uint32_t num = points - first < s.tile ? points - first : s.tile;
-        struct path_args args = path_trace_args(p);
-        args.first = first;
-        args.num = num;
-        args.slots = s.slots;
+        const struct path_args args = path_trace_args(p, first, num, s.slots);
         TYN_DISPATCH(r, .kernel = KERNEL_PATH_PROBE, .cells = {num * s.slots, 1, 1}, .args = &args,
                      .spec = spec);
         struct path_resolve_args resolve = {

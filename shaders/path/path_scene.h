@@ -71,10 +71,14 @@ static inline path_split path_split_work(const tyn_path_params *p, uint32_t elem
     return s;
 }
 
-// Arguments of a tracing kernel but for `first`, `num` and `slots`.
-static inline struct path_args path_trace_args(const tyn_path_params *p)
+// Arguments of a tracing kernel for `num` elements from `first` on, each of which `slots` threads share.
+static inline struct path_args path_trace_args(const tyn_path_params *p, uint32_t first,
+                                               uint32_t num, uint32_t slots)
 {
     struct path_args args = {0};
+    args.first = first;
+    args.num = num;
+    args.slots = slots;
     args.first_sample = p->first_sample + p->sample_offset;
     args.num_samples = p->num_samples;
     args.seed = p->seed;

@@ -135,9 +135,7 @@ static void record(tyn_recorder *r, const void *params)
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1}, .args = &turn);
     TYN_DISPATCH(r, .kernel = KERNEL_CLEAR, .cells = {turn.quads, 1, 1}, .args = &turn);
     for (uint32_t i = 0; i < turn.dispatches; i++) {
-        struct path_args args = path_trace_args(&p->path);
-        args.first = i * p->batch;
-        args.num = p->batch;
+        const struct path_args args = path_trace_args(&p->path, i * p->batch, p->batch, 0);
         tyn_rec_dispatch_indirect(
             r, &(tyn_dispatch){.kernel = KERNEL_PHOTON_TRACE, .args = &args, .spec = spec},
             PHOTON_TRACE_PORT_GROUPS, 12ull * i);
