@@ -82,10 +82,4 @@ float shadow_visibility_surface_lamp_of(shadow_light l, shadow_surface s)
     return shadow_visibility_on_plane(shadow_atlas, l, place, slope, rounding, texel * place.depth);
 }
 
-float shadow_visibility_surface(uint light, shadow_surface s)
-{
-    shadow_light l = shadow_light_of(light);
-    return l.kind == TYN_SHADOW_SUN ? shadow_visibility_surface_sun_of(l, s) : shadow_visibility_surface_lamp_of(l, s);
-}
-
 #endif
