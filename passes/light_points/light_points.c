@@ -1,6 +1,5 @@
 // light_points.c -- see light_points.h.
 #include "light_points.h"
-#include "light_points_args.h"
 #include "passes/light_points_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -14,8 +13,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_light_points_params *p = params;
-    const struct light_points_args args = {.size = {p->size[0], p->size[1], p->size[2]}};
-    TYN_DISPATCH(r, .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
+    TYN_DISPATCH(r, .cells = {p->size[0], p->size[1], p->size[2]}, .args = p);
 }
 
 const tyn_pass_desc tyn_pass_light_points = {

@@ -1,10 +1,9 @@
 // light_points.h -- where the texels of a host's light field are: the middles of the cells of a grid over the media's box.
 #pragma once
 #include <tyndall/pass.h>
+#include "light_points_args.h"
 
-typedef struct tyn_light_points_params {
-    uint32_t size[3]; // texels of the host's images
-} tyn_light_points_params;
+typedef struct light_points_args tyn_light_points_params;
 
 // clang-format off
 #define LIGHT_POINTS_PORTS(X) \

@@ -4,7 +4,7 @@
 #include "shaders/common/shared.h"
 
 struct light_points_args {
-    tyn_uvec3 size;
+    tyn_uvec3 size; // texels of the host's images
 };
 TYN_ASSERT_SIZE(light_points_args, 12);
 

@@ -1,6 +1,5 @@
 // rooms.c -- which cells of the lattice are joined by open links.
 #include "rooms.h"
-#include "rooms_args.h"
 #include "shaders/walls/rooms.h"
 #include "passes/rooms_tables.h"
 
@@ -21,18 +20,14 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_rooms_params *p = params;
     const uint32_t cells = num_cells(p);
-    const struct rooms_args args = {
-        .extent = {p->extent[0], p->extent[1], p->extent[2]},
-        .dims = {p->dims[0], p->dims[1], p->dims[2]},
-    };
     const tyn_dispatch find = {
-        .kernel = KERNEL_CELLS, .cells = {TYN_ROOMS_ELEMENTS(cells), 1, 1}, .args = &args};
+        .kernel = KERNEL_CELLS, .cells = {TYN_ROOMS_ELEMENTS(cells), 1, 1}, .args = p};
     tyn_rec_fill(r, ROOMS_PORT_FOREST, 0);
-    TYN_DISPATCH(r, .kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = p);
     tyn_rec_dispatch(r, &find);
     const tyn_extent maps = tyn_rec_extent(r, ROOMS_PORT_VPL_DISTANCES);
     if (maps.x > 1) { // else VPLs see all
-        TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = maps, .args = &args);
+        TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = maps, .args = p);
         tyn_rec_dispatch(r, &find);
     }
     tyn_rec_work(r, "cells", cells);

@@ -1,13 +1,11 @@
 // rooms.h -- which cells of the lattice are joined by open links.
 #pragma once
 #include <tyndall/pass.h>
+#include "rooms_args.h"
 
 // Parts of the lattice that open links join; what is sealed is one of its own, which no light of virtual point lights
 // (VPLs) elsewhere reaches.
-typedef struct tyn_rooms_params {
-    float extent[3];  // medium_block.extent, m
-    uint32_t dims[3]; // cells of the lattice
-} tyn_rooms_params;
+typedef struct rooms_args tyn_rooms_params;
 
 // clang-format off
 #define ROOMS_PORTS(X) \

@@ -1,6 +1,5 @@
 // sky_seen.c -- the maps of every direction looked up from every cell of the lattice.
 #include "sky_seen.h"
-#include "sky_seen_args.h"
 #include "passes/sky_seen_tables.h"
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -14,12 +13,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_sky_seen_params *p = params;
-    const struct sky_seen_args args = {.extent = {p->extent[0], p->extent[1], p->extent[2]},
-                                       .dims = {p->dims[0], p->dims[1], p->dims[2]},
-                                       .count = p->count,
-                                       .fan = p->fan};
     const uint32_t walls = tyn_rec_has(r, SKY_SEEN_PORT_WALL_LINKS);
-    TYN_DISPATCH(r, .cells = {(p->dims[0] + 1) / 2, p->dims[1], p->dims[2]}, .args = &args,
+    TYN_DISPATCH(r, .cells = {(p->dims[0] + 1) / 2, p->dims[1], p->dims[2]}, .args = p,
                  .spec = &walls);
     const double cells = (double)p->dims[0] * p->dims[1] * p->dims[2];
     tyn_rec_work(r, "cells", cells * p->count);

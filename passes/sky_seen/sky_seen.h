@@ -4,13 +4,9 @@
 #include "shaders/common/bundles.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/light/sky_map_args.h"
+#include "sky_seen_args.h"
 
-typedef struct tyn_sky_seen_params {
-    float extent[3];  // medium_block.extent, m
-    uint32_t dims[3]; // cells of the lattice (tyn_lattice_dims)
-    uint32_t count;   // ordinates at most
-    uint32_t fan;     // directions of each
-} tyn_sky_seen_params;
+typedef struct sky_seen_args tyn_sky_seen_params;
 
 // clang-format off
 #define SKY_SEEN_PORTS(X) \
