@@ -1,7 +1,6 @@
-// gltf.c -- from a glTF file to a scene: checks, tinygltf, then a walk over the nodes.
+// gltf.c -- from a glTF file to a scene: checks, nodes and buffers, then a walk over the nodes.
 #include "io/gltf.h"
 #include "io/gltf_json.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "io/gltf_animation.h"
@@ -11,7 +10,6 @@
 #include "io/gltf_light.h"
 #include "io/gltf_media.h"
 #include "io/gltf_mesh.h"
-#include "io/gltf_shim.h"
 #include "io/uri.h"
 #include "scene/matrix.h"
 #include "scene/surfaces.h"
@@ -46,21 +44,37 @@ static tyn_result check_kind(const uint8_t *bytes, size_t size, const char *file
     return is ? TYN_ERR_PARAMS : TYN_OK;
 }
 
-tyn_result tyn_gltf_find_json(const uint8_t *bytes, size_t size, const char *file,
-                              const char **json, size_t *json_size, bool *glb, const tyn_log *log)
+// The chunk behind the JSON of a binary file.
+static tyn_result find_binary(gltf_container *c, const uint8_t *bytes, uint64_t total,
+                              const char *file, const tyn_log *log)
 {
-    tyn_result other = check_kind(bytes, size, file, log);
-    if (other) {
-        return other;
+    const uint64_t at = 20 + c->json_size;
+    if (at == total) {
+        return TYN_OK;
     }
-    *glb = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
-    *json = (const char *)bytes;
-    *json_size = size;
+    const uint64_t chunk = at + 8 <= total ? load_u32(bytes + at) : UINT64_MAX;
+    if (chunk > total - at - 8 || memcmp(bytes + at + 4, "BIN", 4) != 0) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "%s: binary glTF: the %llu bytes behind its JSON are no chunk of type BIN",
+                      file, (unsigned long long)(total - at));
+        return TYN_ERR_PARAMS;
+    }
+    c->binary = (gltf_buffer){.data = bytes + at + 8, .size = (size_t)chunk};
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_open(gltf_container *out, const uint8_t *bytes, size_t size, const char *file,
+                         const tyn_log *log)
+{
+    TYN_TRY(check_kind(bytes, size, file, log));
+    *out = (gltf_container){.json = (const char *)bytes,
+                            .json_size = size,
+                            .glb = size >= 4 && memcmp(bytes, "glTF", 4) == 0};
     if (size > 0x7fffffff) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: has %zu bytes, at most 2 GiB are read", file, size);
         return TYN_ERR_PARAMS;
     }
-    if (!*glb) {
+    if (!out->glb) {
         return TYN_OK;
     }
     if (size < 20 || load_u32(bytes + 4) != 2) {
@@ -74,100 +88,46 @@ tyn_result tyn_gltf_find_json(const uint8_t *bytes, size_t size, const char *fil
                       file, (unsigned long long)total, (unsigned long long)chunk, size);
         return TYN_ERR_PARAMS;
     }
-    *json = (const char *)bytes + 20;
-    *json_size = (size_t)chunk;
-    return TYN_OK;
-}
-
-// Paths of the buffers that are files, freed by free_paths.
-static tyn_result buffer_files(const json_doc *doc, char ***paths, size_t *count)
-{
-    const cJSON *buffers = tyn_json_member(doc->root, "buffers"), *buffer;
-    const int most = cJSON_GetArraySize(buffers);
-    *count = 0;
-    *paths = calloc((size_t)most + 1, sizeof **paths);
-    if (!*paths) {
-        return TYN_ERR_MEMORY;
-    }
-    cJSON_ArrayForEach(buffer, buffers)
-    {
-        const cJSON *uri = tyn_json_member(buffer, "uri");
-        if (uri && strncmp(uri->valuestring, "data:", 5) != 0) {
-            (*paths)[*count] = tyn_uri_path(doc, uri);
-            if (!(*paths)[*count]) {
-                return TYN_ERR_PARAMS;
-            }
-            ++*count;
-        }
-    }
-    return TYN_OK;
-}
-
-static void free_paths(char **paths, size_t count)
-{
-    for (size_t i = 0; paths && i < count; i++) {
-        free(paths[i]);
-    }
-    free(paths);
-}
-
-// tinygltf drops what it does not like, for instance an index written as 1.0: nothing may be
-// missing.
-static tyn_result check_model(const gltf_model *model, const json_doc *doc)
-{
-    const cJSON *node = NULL, *nodes = tyn_json_member(doc->root, "nodes");
-    bool whole = (int)model->num_nodes == cJSON_GetArraySize(nodes);
-    const gltf_node *read = model->nodes;
-    if (whole) {
-        cJSON_ArrayForEach(node, nodes)
-        {
-            if ((int)read->num_children != cJSON_GetArraySize(tyn_json_member(node, "children")) ||
-                (read->camera >= 0) != (tyn_json_member(node, "camera") != NULL) ||
-                (read->mesh >= 0) != (tyn_json_member(node, "mesh") != NULL)) {
-                return tyn_json_fault(doc, node, "indices must be written without a decimal point");
-            }
-            read++;
-        }
-        return TYN_OK;
-    }
-    return tyn_json_fault(doc, doc->root, "nodes are damaged: only %u can be read",
-                          model->num_nodes);
+    out->json = (const char *)bytes + 20;
+    out->json_size = (size_t)chunk;
+    return find_binary(out, bytes, total, file, log);
 }
 
 // ---- the walk -------------------------------------------------------------------------------
 
 typedef struct walk {
     tyn_scene *scene;
-    const gltf_model *model;
+    gltf_model *model;
     const json_doc *doc;
     const gltf_media *media;
-    const cJSON **nodes;    // JSON of every node
-    double (*to_world)[16]; // of every node
     gltf_meshes meshes;
 } walk;
 
-static void local_matrix(double m[16], const gltf_node *node)
+// NULL: it has none.
+static char *name_of(const cJSON *json)
 {
-    if (node->has_matrix) {
-        memcpy(m, node->matrix, 16 * sizeof *m);
-    } else {
-        tyn_gltf_trs(m, node->translation, node->rotation, node->scale);
-    }
+    const cJSON *name = tyn_json_member(json, "name");
+    return cJSON_IsString(name) && name->valuestring[0] ? strdup(name->valuestring) : NULL;
 }
 
-static char *name_or_null(const char *name)
+// A number that has been checked; 0 where it is not there.
+static double number_of(const cJSON *json, const char *name)
 {
-    return name[0] ? strdup(name) : NULL;
+    const cJSON *at = tyn_json_member(json, name);
+    return at ? at->valuedouble : 0;
 }
 
-static tyn_result add_camera(walk *w, uint32_t n)
+static tyn_result add_camera(walk *w, const gltf_node *node, int index)
 {
-    const gltf_camera *from = &w->model->cameras[w->model->nodes[n].camera];
-    const double *m = w->to_world[n];
+    const cJSON *from = cJSON_GetArrayItem(tyn_json_member(w->doc->root, "cameras"), index);
+    const char *type = tyn_json_member(from, "type")->valuestring;
+    const bool orthographic = strcmp(type, "orthographic") == 0;
+    const cJSON *lens = tyn_json_member(from, type);
+    const double *m = node->to_world, ymag = number_of(lens, "ymag");
     double back[3] = {m[8], m[9], m[10]}, y[3] = {m[4], m[5], m[6]}, right[3], up[3];
     vec_cross(right, y, back);
     if (!vec_normalize(back) || !vec_normalize(right)) {
-        return tyn_json_fault(w->doc, w->nodes[n], "the camera's node is flat: its axes are lost");
+        return tyn_json_fault(w->doc, node->json, "the camera's node is flat: its axes are lost");
     }
     vec_cross(up, back, right);
     tyn_camera *grown =
@@ -178,19 +138,20 @@ static tyn_result add_camera(walk *w, uint32_t n)
     }
     w->scene->cameras = grown;
     // By their place in the file's list, which is how they are asked for, then in the nodes' order.
-    uint32_t index = (uint32_t)w->model->nodes[n].camera, at = w->scene->num_cameras++;
-    for (; at > 0 && grown[at - 1].index > index; at--) {
+    uint32_t at = w->scene->num_cameras++;
+    for (; at > 0 && grown[at - 1].index > (uint32_t)index; at--) {
         grown[at] = grown[at - 1];
     }
     tyn_camera *camera = &grown[at];
     *camera = (tyn_camera){
-        .index = index,
-        .name = name_or_null(w->model->nodes[n].name),
-        .camera_name = name_or_null(from->name),
-        .projection = from->orthographic ? TYN_ORTHOGRAPHIC : TYN_PERSPECTIVE,
-        .yfov = from->orthographic ? 0.0f : (float)from->yfov,
-        .ymag = from->orthographic ? (float)from->ymag : 0.0f,
-        .aspect = (float)(from->orthographic ? from->xmag / from->ymag : from->aspect),
+        .index = (uint32_t)index,
+        .name = name_of(node->json),
+        .camera_name = name_of(from),
+        .projection = orthographic ? TYN_ORTHOGRAPHIC : TYN_PERSPECTIVE,
+        .yfov = (float)number_of(lens, "yfov"),
+        .ymag = (float)ymag,
+        .aspect =
+            (float)(orthographic ? number_of(lens, "xmag") / ymag : number_of(lens, "aspectRatio")),
     };
     for (int a = 0; a < 3; a++) {
         camera->position[a] = (float)m[12 + a];
@@ -201,26 +162,24 @@ static tyn_result add_camera(walk *w, uint32_t n)
     return TYN_OK;
 }
 
-static tyn_result add_light(walk *w, uint32_t n)
+static tyn_result add_light(walk *w, const gltf_node *node, int index)
 {
     const cJSON *extensions = tyn_json_member(w->doc->root, "extensions");
     const cJSON *lights =
         tyn_json_member(tyn_json_member(extensions, "KHR_lights_punctual"), "lights");
-    const cJSON *from = cJSON_GetArrayItem(lights, w->model->nodes[n].light);
-    const cJSON *name = tyn_json_member(from, "name");
-    const double *m = w->to_world[n];
+    const cJSON *from = cJSON_GetArrayItem(lights, index);
+    const double *m = node->to_world;
     double direction[3] = {-m[8], -m[9], -m[10]};
     if (w->scene->num_lights == TYN_MAX_LIGHTS) {
-        return tyn_json_fault(w->doc, w->nodes[n], "there may be %d lights", TYN_MAX_LIGHTS);
+        return tyn_json_fault(w->doc, node->json, "there may be %d lights", TYN_MAX_LIGHTS);
     }
     if (!vec_normalize(direction)) {
-        return tyn_json_fault(w->doc, w->nodes[n], "the light's node is flat: its axis is lost");
+        return tyn_json_fault(w->doc, node->json, "the light's node is flat: its axis is lost");
     }
     tyn_light *light = &w->scene->lights[w->scene->num_lights++];
     TYN_TRY(tyn_gltf_read_light(light, w->doc, from));
-    light->name = name_or_null(w->model->nodes[n].name[0] ? w->model->nodes[n].name
-                               : cJSON_IsString(name)     ? name->valuestring
-                                                          : "");
+    light->name = name_of(node->json);
+    light->name = light->name ? light->name : name_of(from);
     for (int a = 0; a < 3; a++) {
         light->position[a] = (float)m[12 + a];
         light->direction[a] = (float)direction[a];
@@ -229,89 +188,96 @@ static tyn_result add_light(walk *w, uint32_t n)
 }
 
 // The node's mesh, or as many of it as EXT_mesh_gpu_instancing says.
-static tyn_result add_meshes(walk *w, uint32_t n, const double m[16])
+static tyn_result add_meshes(walk *w, const gltf_node *node, int64_t mesh)
 {
-    const gltf_node *node = &w->model->nodes[n];
     gltf_instances instances;
-    tyn_result r = tyn_gltf_instances_read(&instances, &w->meshes.data, w->nodes[n]);
+    tyn_result r = tyn_gltf_instances_read(&instances, &w->meshes.data, node->json);
     if (!r && !instances.count) {
         w->scene->num_meshes++;
-        r = tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, m);
+        r = tyn_gltf_mesh_add(&w->meshes, node->json, mesh, node->to_world);
     }
     for (uint32_t i = 0; !r && i < instances.count; i++) {
         double local[16], at[16];
         tyn_gltf_instance_matrix(&instances, i, local);
-        mat_mul(at, m, local);
+        mat_mul(at, node->to_world, local);
         w->scene->num_meshes++;
-        r = mat_invertible(at) ? tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, at)
-                               : TYN_OK;
+        r = mat_invertible(at) ? tyn_gltf_mesh_add(&w->meshes, node->json, mesh, at) : TYN_OK;
     }
     tyn_gltf_instances_finish(&instances);
     return r;
 }
 
-static tyn_result visit(walk *w, uint32_t n, const double parent[16])
+static tyn_result visit(walk *w, gltf_node *node)
 {
-    const gltf_node *node = &w->model->nodes[n];
-    double local[16];
-    local_matrix(local, node);
-    mat_mul(w->to_world[n], parent, local);
-    const double *m = w->to_world[n];
+    double local[16], *m = node->to_world;
+    const cJSON *extensions = tyn_json_member(node->json, "extensions");
+    const int64_t mesh = tyn_json_whole(node->json, "mesh", -1);
+    const int64_t camera = tyn_json_whole(node->json, "camera", -1);
+    const int64_t light =
+        tyn_json_whole(tyn_json_member(extensions, "KHR_lights_punctual"), "light", -1);
+    if (!node->has_matrix) {
+        tyn_gltf_trs(local, node->translation, node->rotation, node->scale);
+    }
+    mat_identity(m);
+    mat_mul(m, node->parent < 0 ? m : w->model->nodes[node->parent].to_world,
+            node->has_matrix ? node->matrix : local);
     if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0) {
-        return tyn_json_fault(w->doc, tyn_json_member(w->nodes[n], "matrix"),
+        return tyn_json_fault(w->doc, tyn_json_member(node->json, "matrix"),
                               "its last row must be 0, 0, 0, 1");
     }
-    tyn_result r = tyn_gltf_read_shape(w->scene, w->media, w->doc, w->nodes[n], m);
-    if (!r && node->mesh >= 0) {
-        r = add_meshes(w, n, m);
+    TYN_TRY(tyn_gltf_read_shape(w->scene, w->media, w->doc, node->json, m));
+    if (mesh >= 0) {
+        TYN_TRY(add_meshes(w, node, mesh));
     }
-    if (!r && node->camera >= 0) {
-        r = add_camera(w, n);
+    if (camera >= 0) {
+        TYN_TRY(add_camera(w, node, (int)camera));
     }
-    if (!r && node->light >= 0) {
-        r = add_light(w, n);
-    }
-    return r;
+    return light >= 0 ? add_light(w, node, (int)light) : TYN_OK;
 }
 
+// The scene that is shown: the one that the document names, else the first. NULL: it has none, and every root is shown.
+static const cJSON *shown_scene(const json_doc *doc)
+{
+    return cJSON_GetArrayItem(tyn_json_member(doc->root, "scenes"),
+                              (int)tyn_json_whole(doc->root, "scene", 0));
+}
+
+// Puts the nodes of a list on the stack, the first on top.
+static void push_all(const cJSON *list, int64_t *stack, int64_t *top)
+{
+    const cJSON *node;
+    const int64_t count = cJSON_GetArraySize(list);
+    int64_t i = 0;
+    cJSON_ArrayForEach(node, list)
+    {
+        stack[*top + count - ++i] = (int64_t)node->valuedouble;
+    }
+    *top += count;
+}
+
+// Depth first, children in order; each node is pushed once because nodes form trees.
 static tyn_result walk_nodes(walk *w)
 {
     const gltf_model *model = w->model;
-    const cJSON *node;
-    uint32_t *stack = calloc((size_t)model->num_nodes + 1, sizeof *stack), top = 0, i = 0;
-    uint32_t *parents = calloc((size_t)model->num_nodes + 1, sizeof *parents);
-    double identity[16];
+    const cJSON *shown = shown_scene(w->doc);
+    int64_t *stack = calloc((size_t)model->num_nodes + 1, sizeof *stack), top = 0;
     tyn_result r = TYN_OK;
-    w->nodes = calloc((size_t)model->num_nodes + 1, sizeof *w->nodes);
-    w->to_world = calloc((size_t)model->num_nodes + 1, sizeof *w->to_world);
-    if (!stack || !parents || !w->nodes || !w->to_world) {
+    if (!stack) {
         tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes", w->doc->file);
-        r = TYN_ERR_MEMORY;
-        goto done;
+        return TYN_ERR_MEMORY;
     }
-    cJSON_ArrayForEach(node, tyn_json_member(w->doc->root, "nodes"))
-    {
-        w->nodes[i++] = node;
-    }
-    // Depth first, children in order; each node is pushed once because nodes form trees.
-    mat_identity(identity);
-    for (i = model->num_roots; i-- > 0;) {
-        parents[model->roots[i]] = UINT32_MAX;
-        stack[top++] = model->roots[i];
-    }
-    while (!r && top > 0) {
-        uint32_t n = stack[--top];
-        r = visit(w, n, parents[n] == UINT32_MAX ? identity : w->to_world[parents[n]]);
-        for (i = model->nodes[n].num_children; i-- > 0;) {
-            parents[model->nodes[n].children[i]] = n;
-            stack[top++] = model->nodes[n].children[i];
+    push_all(tyn_json_member(shown, "nodes"), stack, &top);
+    for (int64_t i = model->num_nodes; !shown && i-- > 0;) {
+        if (model->nodes[i].parent < 0) {
+            stack[top++] = i;
         }
     }
-done:
+    while (!r && top > 0) {
+        gltf_node *node = &model->nodes[stack[--top]];
+        r = visit(w, node);
+        push_all(tyn_json_member(node->json, "children"), stack, &top);
+    }
     free(stack);
-    free(parents);
-    free(w->nodes);
-    free(w->to_world);
     return r;
 }
 
@@ -339,17 +305,17 @@ static void read_generator(tyn_scene *scene, const json_doc *doc)
     }
 }
 
-static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const json_doc *doc,
+static tyn_result build_scene(tyn_scene *scene, gltf_model *model, const json_doc *doc,
                               const char *environment, const tyn_moment *moment)
 {
+    const cJSON *shown = shown_scene(doc);
     gltf_media media;
     tyn_result r = tyn_gltf_read_media(scene, &media, doc);
     if (!r) {
         walk w = {.scene = scene, .model = model, .doc = doc, .media = &media};
         r = tyn_gltf_meshes_open(&w.meshes, doc, model, scene);
         if (!r && moment && moment->timed) {
-            r = tyn_gltf_animate(model->nodes, model->num_nodes, moment->seconds, &w.meshes.data,
-                                 scene);
+            r = tyn_gltf_animate(model, moment->seconds, &w.meshes.data, scene);
         } else if (!r) {
             tyn_gltf_warn_of_animations(doc, scene);
         }
@@ -359,55 +325,41 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
     }
     if (!r && environment) {
         r = tyn_environment_load(&scene->environment, environment, doc->log);
-    } else if (!r && model->scene >= 0) {
-        const cJSON *scenes = tyn_json_member(doc->root, "scenes");
-        r = tyn_gltf_read_environment(scene, doc, cJSON_GetArrayItem(scenes, model->scene));
+    } else if (!r) {
+        r = tyn_gltf_read_environment(scene, doc, shown);
     }
     if (!r) {
         tyn_gltf_warn_unknown(scene, doc);
         tyn_gltf_warn_extensions(scene, doc);
     }
-    scene->name = name_or_null(model->scene_name);
+    scene->name = name_of(shown);
     read_generator(scene, doc);
     return r ? r : check_scene(scene, doc);
+}
+
+static tyn_result parse(tyn_scene *scene, json_doc *doc, gltf_model *model,
+                        const gltf_container *container, const char *environment,
+                        const tyn_moment *moment)
+{
+    TYN_TRY(tyn_json_parse(doc, container->json, container->json_size, doc->file, doc->log));
+    doc->frame = moment && moment->numbered ? &moment->frame : NULL;
+    TYN_TRY(tyn_gltf_check(doc, container->glb));
+    TYN_TRY(tyn_gltf_model_read(model, doc, &container->binary));
+    return build_scene(scene, model, doc, environment, moment);
 }
 
 tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, const char *file,
                           const char *environment, const tyn_moment *moment, const tyn_log *log)
 {
-    const char *text;
-    size_t text_size;
-    bool glb;
-    json_doc doc = {0};
+    gltf_container container;
+    json_doc doc = {.file = file, .log = log};
     gltf_model model = {0};
-    char *directory = tyn_path_directory(file);
-    tyn_result r = tyn_gltf_find_json(bytes, size, file, &text, &text_size, &glb, log);
-    if (!r) {
-        r = tyn_json_parse(&doc, text, text_size, file, log);
-        doc.frame = moment && moment->numbered ? &moment->frame : NULL;
-    }
-    if (!r) {
-        r = tyn_gltf_check(&doc, glb);
-    }
-    if (!r) {
-        gltf_source source = {bytes, size, glb, NULL, 0, directory, file};
-        char **paths = NULL;
-        r = directory ? buffer_files(&doc, &paths, &source.num_buffer_files) : TYN_ERR_MEMORY;
-        source.buffer_files = paths;
-        r = r ? r : gltf_model_read(&model, &source, log);
-        free_paths(paths, source.num_buffer_files);
-    }
-    if (!r) {
-        r = check_model(&model, &doc);
-    }
-    if (!r) {
-        r = build_scene(scene, &model, &doc, environment, moment);
-    }
+    TYN_TRY(tyn_gltf_open(&container, bytes, size, file, log));
+    const tyn_result r = parse(scene, &doc, &model, &container, environment, moment);
     if (r) {
         tyn_scene_finish(scene);
     }
-    gltf_model_finish(&model);
+    tyn_gltf_model_finish(&model);
     tyn_json_finish(&doc);
-    free(directory);
     return r;
 }

@@ -28,28 +28,21 @@ void tyn_gltf_data_close(gltf_data *data)
 
 // ---- bytes ------------------------------------------------------------------------------------
 
-// A whole number that has been checked, or `missing`.
-static int64_t member(const cJSON *parent, const char *name, int64_t missing)
-{
-    const cJSON *at = tyn_json_member(parent, name);
-    return at ? (int64_t)at->valuedouble : missing;
-}
-
 uint64_t tyn_gltf_view_size(const gltf_data *data, int64_t view)
 {
-    return (uint64_t)member(data->buffer_views.items[view], "byteLength", 0);
+    return (uint64_t)tyn_json_whole(data->buffer_views.items[view], "byteLength", 0);
 }
 
 const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,
                                    uint64_t size)
 {
     const cJSON *v = data->buffer_views.items[view];
-    const int64_t buffer = member(v, "buffer", -1);
-    if (buffer < 0 || buffer >= (int64_t)data->model->num_buffers) {
+    const int64_t buffer = tyn_json_whole(v, "buffer", -1);
+    if (buffer < 0 || buffer >= data->model->num_buffers) {
         return NULL;
     }
-    const gltf_bytes *bytes = &data->model->buffers[buffer];
-    const uint64_t start = (uint64_t)member(v, "byteOffset", 0) + offset;
+    const gltf_buffer *bytes = &data->model->buffers[buffer];
+    const uint64_t start = (uint64_t)tyn_json_whole(v, "byteOffset", 0) + offset;
     return start <= bytes->size && size <= bytes->size - start ? bytes->data + start : NULL;
 }
 
@@ -61,13 +54,14 @@ typedef struct elements {
 static tyn_result find_elements(const gltf_data *data, const cJSON *at, uint64_t count,
                                 uint64_t size, elements *out)
 {
-    const int64_t view = member(at, "bufferView", -1);
+    const int64_t view = tyn_json_whole(at, "bufferView", -1);
     *out = (elements){NULL, size};
     if (view < 0) {
         return TYN_OK;
     }
-    out->stride = (uint64_t)member(data->buffer_views.items[view], "byteStride", (int64_t)size);
-    out->bytes = tyn_gltf_view_bytes(data, view, (uint64_t)member(at, "byteOffset", 0),
+    out->stride =
+        (uint64_t)tyn_json_whole(data->buffer_views.items[view], "byteStride", (int64_t)size);
+    out->bytes = tyn_gltf_view_bytes(data, view, (uint64_t)tyn_json_whole(at, "byteOffset", 0),
                                      out->stride * (count - 1) + size);
     return out->bytes ? TYN_OK : tyn_json_fault(data->doc, at, "reaches beyond its buffer");
 }
@@ -113,9 +107,9 @@ static tyn_result find_accessor(const gltf_data *data, const cJSON *at, accessor
 {
     static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     const cJSON *json = data->accessors.items[(int64_t)at->valuedouble];
-    const int64_t count = member(json, "count", 0);
+    const int64_t count = tyn_json_whole(json, "count", 0);
     *a = (accessor){.json = json,
-                    .type = member(json, "componentType", FLOAT),
+                    .type = tyn_json_whole(json, "componentType", FLOAT),
                     .normalized = cJSON_IsTrue(tyn_json_member(json, "normalized"))};
     for (uint32_t i = 0; i < 4; i++) {
         if (strcmp(types[i], tyn_json_member(json, "type")->valuestring) == 0) {
@@ -142,7 +136,8 @@ static tyn_result read_sparse(const gltf_data *data, const accessor *a, put_fn p
         return TYN_OK;
     }
     const cJSON *indices = tyn_json_member(sparse, "indices");
-    const int64_t count = member(sparse, "count", 0), type = member(indices, "componentType", UINT);
+    const int64_t count = tyn_json_whole(sparse, "count", 0),
+                  type = tyn_json_whole(indices, "componentType", UINT);
     elements at, values;
     tyn_result r = find_elements(data, indices, (uint64_t)count, component_size(type), &at);
     r = r ? r

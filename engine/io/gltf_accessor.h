@@ -1,7 +1,6 @@
 // gltf_accessor.h -- values of accessors as floats or indices. The document has passed tyn_gltf_check.
 #pragma once
-#include "io/gltf_shim.h"
-#include "io/json.h"
+#include "io/gltf_model.h"
 
 typedef struct gltf_data {
     const json_doc *doc;

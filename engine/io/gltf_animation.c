@@ -127,9 +127,8 @@ static double *target_of(gltf_node *node, const char *path, uint32_t *components
                                             : NULL;
 }
 
-static tyn_result play_channel(gltf_node *nodes, uint32_t num_nodes, double seconds,
-                               const gltf_data *data, const cJSON *channel,
-                               const json_list *samplers, bool *weights)
+static tyn_result play_channel(gltf_model *model, double seconds, const gltf_data *data,
+                               const cJSON *channel, const json_list *samplers, bool *weights)
 {
     const json_doc *doc = data->doc;
     cJSON *target;
@@ -144,13 +143,13 @@ static tyn_result play_channel(gltf_node *nodes, uint32_t num_nodes, double seco
         return by ? TYN_OK
                   : tyn_json_fault(doc, channel, "sampler is missing: an index of samplers");
     }
-    TYN_TRY(tyn_json_index(doc, of, num_nodes, "nodes", &node));
+    TYN_TRY(tyn_json_index(doc, of, model->num_nodes, "nodes", &node));
     TYN_TRY(tyn_json_index(doc, by, samplers->count, "samplers", &index));
-    double *moved = target_of(&nodes[node], path, &components);
+    double *moved = target_of(&model->nodes[node], path, &components);
     if (!moved) {
         return TYN_OK;
     }
-    if (nodes[node].has_matrix) {
+    if (model->nodes[node].has_matrix) {
         return tyn_json_fault(doc, of,
                               "this node has a matrix: only translation, rotation and "
                               "scale can be animated");
@@ -174,8 +173,8 @@ static tyn_result play_channel(gltf_node *nodes, uint32_t num_nodes, double seco
     return r;
 }
 
-tyn_result tyn_gltf_animate(gltf_node *nodes, uint32_t num_nodes, double seconds,
-                            const gltf_data *data, tyn_scene *scene)
+tyn_result tyn_gltf_animate(gltf_model *model, double seconds, const gltf_data *data,
+                            tyn_scene *scene)
 {
     json_list animations = {0};
     bool weights = false;
@@ -185,8 +184,7 @@ tyn_result tyn_gltf_animate(gltf_node *nodes, uint32_t num_nodes, double seconds
         r = tyn_json_list(data->doc, animations.items[i], "channels", &channels);
         r = r ? r : tyn_json_list(data->doc, animations.items[i], "samplers", &samplers);
         for (int64_t k = 0; !r && k < channels.count; k++) {
-            r = play_channel(nodes, num_nodes, seconds, data, channels.items[k], &samplers,
-                             &weights);
+            r = play_channel(model, seconds, data, channels.items[k], &samplers, &weights);
         }
         free(channels.items);
         free(samplers.items);

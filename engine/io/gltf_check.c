@@ -2,7 +2,6 @@
 #include "io/gltf_check.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_light.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -294,29 +293,12 @@ static tyn_result check_camera(const checker *c, const cJSON *camera)
 
 static tyn_result check_node(const checker *c, const cJSON *node)
 {
-    double v[16];
     cJSON *extensions, *lights;
     const char *name;
     TYN_TRY(tyn_json_string(c->doc, node, "name", &name));
     TYN_TRY(check_index(c, node, "camera", &c->cameras, "cameras"));
     TYN_TRY(check_index(c, node, "mesh", &c->meshes, "meshes"));
     TYN_TRY(check_indices(c, node, "children", &c->nodes, "nodes"));
-    TYN_TRY(tyn_json_numbers(c->doc, node, "matrix", 16, -1e15, 1e15, "a finite number", v));
-    TYN_TRY(tyn_json_numbers(c->doc, node, "translation", 3, -1e15, 1e15, "a finite number", v));
-    TYN_TRY(tyn_json_numbers(c->doc, node, "scale", 3, -1e15, 1e15, "a finite number", v));
-    if (tyn_json_member(node, "rotation")) {
-        TYN_TRY(tyn_json_numbers(c->doc, node, "rotation", 4, -1.001, 1.001, "-1 to 1", v));
-        if (fabs(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3] - 1.0) > 0.01) {
-            return tyn_json_fault(c->doc, tyn_json_member(node, "rotation"),
-                                  "must be a unit quaternion x, y, z, w");
-        }
-    }
-    const cJSON *matrix = tyn_json_member(node, "matrix");
-    if (matrix && (tyn_json_member(node, "translation") || tyn_json_member(node, "rotation") ||
-                   tyn_json_member(node, "scale"))) {
-        return tyn_json_fault(c->doc, matrix,
-                              "a node has either a matrix or translation, rotation and scale");
-    }
     TYN_TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
     TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
     return check_index(c, lights, "light", &c->lights, "lights");

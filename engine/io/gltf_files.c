@@ -33,16 +33,15 @@ tyn_result tyn_scene_files(const char *path, const uint32_t *frame, tyn_file_fou
         return TYN_OK;
     }
     void *bytes = NULL;
-    size_t size = 0, text_size;
-    const char *text;
-    bool glb;
+    size_t size = 0;
+    gltf_container container;
     json_doc doc = {0};
     tyn_result r = tyn_file_read(path, 0x7fffffff, &bytes, &size, log);
     if (!r) {
-        r = tyn_gltf_find_json(bytes, size, path, &text, &text_size, &glb, log);
+        r = tyn_gltf_open(&container, bytes, size, path, log);
     }
     if (!r) {
-        r = tyn_json_parse(&doc, text, text_size, path, log);
+        r = tyn_json_parse(&doc, container.json, container.json_size, path, log);
     }
     if (!r) {
         doc.frame = frame;

@@ -142,12 +142,13 @@ static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_text
     if (strncmp(uri->valuestring, "data:", 5) != 0) {
         return read_file(data, uri, out, missing);
     }
-    gltf_bytes bytes;
-    if (!gltf_data_uri(uri->valuestring, &bytes)) {
+    void *bytes;
+    size_t size;
+    if (!tyn_gltf_data_uri(uri->valuestring, &bytes, &size)) {
         return tyn_json_fault(data->doc, uri, "must be base64 data of a PNG or JPEG picture");
     }
-    tyn_result r = decode(data, uri, bytes.data, bytes.size, out);
-    free(bytes.data);
+    tyn_result r = decode(data, uri, bytes, size, out);
+    free(bytes);
     return r;
 }
 

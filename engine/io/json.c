@@ -180,6 +180,12 @@ cJSON *tyn_json_member(const cJSON *parent, const char *name)
     return cJSON_GetObjectItemCaseSensitive(parent, name);
 }
 
+int64_t tyn_json_whole(const cJSON *parent, const char *name, int64_t missing)
+{
+    const cJSON *at = tyn_json_member(parent, name);
+    return at ? (int64_t)at->valuedouble : missing;
+}
+
 tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out)
 {
     *out = tyn_json_member(parent, name);

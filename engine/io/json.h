@@ -61,3 +61,5 @@ typedef struct json_list {
 tyn_result tyn_json_list(const json_doc *doc, const cJSON *parent, const char *name,
                          json_list *out);
 cJSON *tyn_json_member(const cJSON *parent, const char *name); // NULL: not there
+// A whole number that has been checked, or `missing`.
+int64_t tyn_json_whole(const cJSON *parent, const char *name, int64_t missing);

@@ -13,16 +13,6 @@ static int hex(char c)
                                   : -1;
 }
 
-char *tyn_path_directory(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    size_t length = slash ? (size_t)(slash - path) : 0;
-    if (slash == path) {
-        return strdup("/");
-    }
-    return length ? strndup(path, length) : strdup(".");
-}
-
 // Puts the number in the place of the first run of '#' behind `base`, which there must be; a new string.
 static char *put_number(const char *path, size_t base, uint32_t number)
 {

@@ -6,10 +6,6 @@
 // fault; else freed with free().
 char *tyn_uri_path(const json_doc *doc, const cJSON *uri);
 
-// Everything up to the last '/', without it; "." if there is none. Freed with free(); NULL: no
-// memory.
-char *tyn_path_directory(const char *path);
-
 // A log that keeps the first error, so that what a reader said can be told together with the place
 // of the scene that named the file.
 typedef struct tyn_capture {

@@ -207,7 +207,8 @@ static void wrong_animations(void **state)
     static const struct {
         const char *rest, *says;
     } cases[] = {
-        {ANIMATION(CHANNEL(0, 0, "translation"), "{'input': 1}"), "'output' property is missing"},
+        {ANIMATION(CHANNEL(0, 0, "translation"), "{'input': 1}"),
+         "animations[0].samplers[0] = an object: needs input and output"},
         {ANIMATION(CHANNEL(0, 0, "translation"), "{'input': 1, 'output': 3}"),
          "has 9 elements for 3 keys, must have 3"},
         {ANIMATION(CHANNEL(0, 0, "translation"), "{'input': 1, 'output': 4}"), "VEC3"},

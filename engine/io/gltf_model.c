@@ -1,0 +1,140 @@
+// gltf_model.c -- see gltf_model.h.
+#include "io/gltf_model.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/uri.h"
+
+// ---- buffers ----------------------------------------------------------------------------------
+
+bool tyn_gltf_data_uri(const char *uri, void **bytes, size_t *size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char marker[] = ";base64,";
+    const char *text = strncmp(uri, "data:", 5) == 0 ? strstr(uri, marker) : NULL;
+    text = text ? text + sizeof marker - 1 : "";
+    const size_t length = strcspn(text, "=");
+    uint8_t *out = malloc(length / 4 * 3 + 3);
+    uint32_t bits = 0;
+    bool good = out && length > 1;
+    *size = 0;
+    for (size_t i = 0; good && i < length; i++) {
+        const char *digit = strchr(digits, text[i]);
+        good = digit != NULL;
+        bits = bits << 6 | (uint32_t)(good ? digit - digits : 0);
+        if (i % 4) { // 4, 2 or 0 bits are left over
+            out[(*size)++] = (uint8_t)(bits >> (6 - 2 * (i % 4)));
+        }
+    }
+    if (!good) {
+        free(out);
+    }
+    *bytes = good ? out : NULL;
+    return good;
+}
+
+static tyn_result read_file(const json_doc *doc, const cJSON *uri, gltf_buffer *out)
+{
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    char *path = tyn_uri_path(doc, uri);
+    if (!path) {
+        return TYN_ERR_PARAMS;
+    }
+    tyn_result r = tyn_file_read(path, 1ull << 31, &out->owned, &out->size, &capture.log);
+    free(path);
+    return r ? tyn_capture_fault(&capture, doc, uri, r) : TYN_OK;
+}
+
+static tyn_result read_buffer(const json_doc *doc, const cJSON *buffer, const gltf_buffer *chunk,
+                              gltf_buffer *out)
+{
+    const cJSON *uri = tyn_json_member(buffer, "uri");
+    const size_t length = (size_t)tyn_json_whole(buffer, "byteLength", 0);
+    if (!uri || !uri->valuestring[0]) {
+        *out = (gltf_buffer){chunk->data, length, NULL};
+        return length <= chunk->size
+                   ? TYN_OK
+                   : tyn_json_fault(doc, buffer,
+                                    "the file's binary chunk has %zu bytes: byteLength "
+                                    "must be at most that",
+                                    chunk->size);
+    }
+    if (strncmp(uri->valuestring, "data:", 5) != 0) {
+        TYN_TRY(read_file(doc, uri, out));
+    } else if (!tyn_gltf_data_uri(uri->valuestring, &out->owned, &out->size)) {
+        return tyn_json_fault(doc, uri, "must be base64 data");
+    }
+    out->data = out->owned;
+    return out->size == length
+               ? TYN_OK
+               : tyn_json_fault(doc, uri, "has %zu bytes, byteLength is %zu", out->size, length);
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+static tyn_result read_node(const json_doc *doc, const cJSON *json, gltf_node *node)
+{
+    static const char finite[] = "a finite number";
+    const cJSON *matrix = tyn_json_member(json, "matrix");
+    const cJSON *rotation = tyn_json_member(json, "rotation");
+    node->json = json;
+    node->has_matrix = matrix != NULL;
+    node->rotation[3] = node->scale[0] = node->scale[1] = node->scale[2] = 1;
+    TYN_TRY(tyn_json_numbers(doc, json, "matrix", 16, -1e15, 1e15, finite, node->matrix));
+    TYN_TRY(tyn_json_numbers(doc, json, "translation", 3, -1e15, 1e15, finite, node->translation));
+    TYN_TRY(tyn_json_numbers(doc, json, "scale", 3, -1e15, 1e15, finite, node->scale));
+    TYN_TRY(tyn_json_numbers(doc, json, "rotation", 4, -1.001, 1.001, "-1 to 1", node->rotation));
+    const double *q = node->rotation;
+    if (fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1.0) > 0.01) {
+        return tyn_json_fault(doc, rotation, "must be a unit quaternion x, y, z, w");
+    }
+    if (matrix &&
+        (rotation || tyn_json_member(json, "translation") || tyn_json_member(json, "scale"))) {
+        return tyn_json_fault(doc, matrix,
+                              "a node has either a matrix or translation, rotation and scale");
+    }
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const gltf_buffer *chunk)
+{
+    const cJSON *nodes = tyn_json_member(doc->root, "nodes"), *node, *child;
+    const cJSON *buffers = tyn_json_member(doc->root, "buffers"), *buffer;
+    const size_t most_nodes = (size_t)cJSON_GetArraySize(nodes) + 1;
+    *model = (gltf_model){
+        .nodes = calloc(most_nodes, sizeof *model->nodes),
+        .buffers = calloc((size_t)cJSON_GetArraySize(buffers) + 1, sizeof *model->buffers)};
+    if (!model->nodes || !model->buffers) {
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes and buffers",
+                      doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < most_nodes; i++) {
+        model->nodes[i].parent = -1;
+    }
+    cJSON_ArrayForEach(node, nodes)
+    {
+        TYN_TRY(read_node(doc, node, &model->nodes[model->num_nodes]));
+        cJSON_ArrayForEach(child, tyn_json_member(node, "children"))
+        {
+            model->nodes[(int64_t)child->valuedouble].parent = model->num_nodes;
+        }
+        model->num_nodes++;
+    }
+    cJSON_ArrayForEach(buffer, buffers)
+    {
+        TYN_TRY(read_buffer(doc, buffer, chunk, &model->buffers[model->num_buffers++]));
+    }
+    return TYN_OK;
+}
+
+void tyn_gltf_model_finish(gltf_model *model)
+{
+    for (int64_t i = 0; i < model->num_buffers; i++) {
+        free(model->buffers[i].owned);
+    }
+    free(model->buffers);
+    free(model->nodes);
+    *model = (gltf_model){0};
+}
