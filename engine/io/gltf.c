@@ -117,9 +117,9 @@ static double number_of(const cJSON *json, const char *name)
     return at ? at->valuedouble : 0;
 }
 
-static tyn_result add_camera(walk *w, const gltf_node *node, int index)
+static tyn_result add_camera(walk *w, const gltf_node *node, int64_t index)
 {
-    const cJSON *from = cJSON_GetArrayItem(tyn_json_member(w->doc->root, "cameras"), index);
+    const cJSON *from = w->model->lists[GLTF_CAMERAS].items[index];
     const char *type = tyn_json_member(from, "type")->valuestring;
     const bool orthographic = strcmp(type, "orthographic") == 0;
     const cJSON *lens = tyn_json_member(from, type);
@@ -162,12 +162,9 @@ static tyn_result add_camera(walk *w, const gltf_node *node, int index)
     return TYN_OK;
 }
 
-static tyn_result add_light(walk *w, const gltf_node *node, int index)
+static tyn_result add_light(walk *w, const gltf_node *node, int64_t index)
 {
-    const cJSON *extensions = tyn_json_member(w->doc->root, "extensions");
-    const cJSON *lights =
-        tyn_json_member(tyn_json_member(extensions, "KHR_lights_punctual"), "lights");
-    const cJSON *from = cJSON_GetArrayItem(lights, index);
+    const cJSON *from = w->model->lists[GLTF_LIGHTS].items[index];
     const double *m = node->to_world;
     double direction[3] = {-m[8], -m[9], -m[10]};
     if (w->scene->num_lights == TYN_MAX_LIGHTS) {
@@ -230,16 +227,16 @@ static tyn_result visit(walk *w, gltf_node *node)
         TYN_TRY(add_meshes(w, node, mesh));
     }
     if (camera >= 0) {
-        TYN_TRY(add_camera(w, node, (int)camera));
+        TYN_TRY(add_camera(w, node, camera));
     }
-    return light >= 0 ? add_light(w, node, (int)light) : TYN_OK;
+    return light >= 0 ? add_light(w, node, light) : TYN_OK;
 }
 
 // The scene that is shown: the one that the document names, else the first. NULL: it has none, and every root is shown.
-static const cJSON *shown_scene(const json_doc *doc)
+static const cJSON *shown_scene(const json_doc *doc, const gltf_model *model)
 {
-    return cJSON_GetArrayItem(tyn_json_member(doc->root, "scenes"),
-                              (int)tyn_json_whole(doc->root, "scene", 0));
+    const json_list *scenes = &model->lists[GLTF_SCENES];
+    return scenes->count ? scenes->items[tyn_json_whole(doc->root, "scene", 0)] : NULL;
 }
 
 // Puts the nodes of a list on the stack, the first on top.
@@ -259,15 +256,16 @@ static void push_all(const cJSON *list, int64_t *stack, int64_t *top)
 static tyn_result walk_nodes(walk *w)
 {
     const gltf_model *model = w->model;
-    const cJSON *shown = shown_scene(w->doc);
-    int64_t *stack = calloc((size_t)model->num_nodes + 1, sizeof *stack), top = 0;
+    const cJSON *shown = shown_scene(w->doc, model);
+    const int64_t count = model->lists[GLTF_NODES].count;
+    int64_t *stack = calloc((size_t)count + 1, sizeof *stack), top = 0;
     tyn_result r = TYN_OK;
     if (!stack) {
         tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes", w->doc->file);
         return TYN_ERR_MEMORY;
     }
     push_all(tyn_json_member(shown, "nodes"), stack, &top);
-    for (int64_t i = model->num_nodes; !shown && i-- > 0;) {
+    for (int64_t i = count; !shown && i-- > 0;) {
         if (model->nodes[i].parent < 0) {
             stack[top++] = i;
         }
@@ -308,7 +306,7 @@ static void read_generator(tyn_scene *scene, const json_doc *doc)
 static tyn_result build_scene(tyn_scene *scene, gltf_model *model, const json_doc *doc,
                               const char *environment, const tyn_moment *moment)
 {
-    const cJSON *shown = shown_scene(doc);
+    const cJSON *shown = shown_scene(doc, model);
     gltf_media media;
     tyn_result r = tyn_gltf_read_media(scene, &media, doc);
     if (!r) {
@@ -343,8 +341,7 @@ static tyn_result parse(tyn_scene *scene, json_doc *doc, gltf_model *model,
 {
     TYN_TRY(tyn_json_parse(doc, container->json, container->json_size, doc->file, doc->log));
     doc->frame = moment && moment->numbered ? &moment->frame : NULL;
-    TYN_TRY(tyn_gltf_check(doc, container->glb));
-    TYN_TRY(tyn_gltf_model_read(model, doc, &container->binary));
+    TYN_TRY(tyn_gltf_model_read(model, doc, container->glb ? &container->binary : NULL));
     return build_scene(scene, model, doc, environment, moment);
 }
 

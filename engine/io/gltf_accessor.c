@@ -13,34 +13,19 @@ enum { MAX_ELEMENTS = 1 << 27, MAX_ZEROS = 1 << 22 };
 
 enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
-tyn_result tyn_gltf_data_open(gltf_data *data, const json_doc *doc, const gltf_model *model)
-{
-    *data = (gltf_data){.doc = doc, .model = model};
-    tyn_result r = tyn_json_list(doc, doc->root, "accessors", &data->accessors);
-    return r ? r : tyn_json_list(doc, doc->root, "bufferViews", &data->buffer_views);
-}
-
-void tyn_gltf_data_close(gltf_data *data)
-{
-    free(data->accessors.items);
-    free(data->buffer_views.items);
-}
-
 // ---- bytes ------------------------------------------------------------------------------------
 
 uint64_t tyn_gltf_view_size(const gltf_data *data, int64_t view)
 {
-    return (uint64_t)tyn_json_whole(data->buffer_views.items[view], "byteLength", 0);
+    return (uint64_t)tyn_json_whole(data->model->lists[GLTF_BUFFER_VIEWS].items[view], "byteLength",
+                                    0);
 }
 
 const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,
                                    uint64_t size)
 {
-    const cJSON *v = data->buffer_views.items[view];
-    const int64_t buffer = tyn_json_whole(v, "buffer", -1);
-    if (buffer < 0 || buffer >= data->model->num_buffers) {
-        return NULL;
-    }
+    const cJSON *v = data->model->lists[GLTF_BUFFER_VIEWS].items[view];
+    const int64_t buffer = tyn_json_whole(v, "buffer", 0);
     const gltf_buffer *bytes = &data->model->buffers[buffer];
     const uint64_t start = (uint64_t)tyn_json_whole(v, "byteOffset", 0) + offset;
     return start <= bytes->size && size <= bytes->size - start ? bytes->data + start : NULL;
@@ -59,8 +44,8 @@ static tyn_result find_elements(const gltf_data *data, const cJSON *at, uint64_t
     if (view < 0) {
         return TYN_OK;
     }
-    out->stride =
-        (uint64_t)tyn_json_whole(data->buffer_views.items[view], "byteStride", (int64_t)size);
+    out->stride = (uint64_t)tyn_json_whole(data->model->lists[GLTF_BUFFER_VIEWS].items[view],
+                                           "byteStride", (int64_t)size);
     out->bytes = tyn_gltf_view_bytes(data, view, (uint64_t)tyn_json_whole(at, "byteOffset", 0),
                                      out->stride * (count - 1) + size);
     return out->bytes ? TYN_OK : tyn_json_fault(data->doc, at, "reaches beyond its buffer");
@@ -106,7 +91,7 @@ typedef struct accessor {
 static tyn_result find_accessor(const gltf_data *data, const cJSON *at, accessor *a)
 {
     static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    const cJSON *json = data->accessors.items[(int64_t)at->valuedouble];
+    const cJSON *json = data->model->lists[GLTF_ACCESSORS].items[(int64_t)at->valuedouble];
     const int64_t count = tyn_json_whole(json, "count", 0);
     *a = (accessor){.json = json,
                     .type = tyn_json_whole(json, "componentType", FLOAT),

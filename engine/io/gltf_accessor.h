@@ -5,10 +5,7 @@
 typedef struct gltf_data {
     const json_doc *doc;
     const gltf_model *model;
-    json_list accessors, buffer_views;
 } gltf_data;
-tyn_result tyn_gltf_data_open(gltf_data *data, const json_doc *doc, const gltf_model *model);
-void tyn_gltf_data_close(gltf_data *data);
 
 // Bytes [offset, offset + size) of a buffer view; NULL if it does not hold as many.
 const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,

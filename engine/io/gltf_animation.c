@@ -31,8 +31,10 @@ static tyn_result read_track(track *t, const gltf_data *data, const cJSON *sampl
     if (!input || !output) {
         return tyn_json_fault(doc, sampler, "needs input and output, indices of accessors");
     }
-    TYN_TRY(tyn_json_index(doc, input, data->accessors.count, "accessors", &unused));
-    TYN_TRY(tyn_json_index(doc, output, data->accessors.count, "accessors", &unused));
+    TYN_TRY(
+        tyn_json_index(doc, input, data->model->lists[GLTF_ACCESSORS].count, "accessors", &unused));
+    TYN_TRY(tyn_json_index(doc, output, data->model->lists[GLTF_ACCESSORS].count, "accessors",
+                           &unused));
     TYN_TRY(tyn_json_string(doc, sampler, "interpolation", &how));
     while ((int)t->how <= CUBIC && strcmp(how, names[t->how]) != 0) {
         t->how++;
@@ -143,7 +145,7 @@ static tyn_result play_channel(gltf_model *model, double seconds, const gltf_dat
         return by ? TYN_OK
                   : tyn_json_fault(doc, channel, "sampler is missing: an index of samplers");
     }
-    TYN_TRY(tyn_json_index(doc, of, model->num_nodes, "nodes", &node));
+    TYN_TRY(tyn_json_index(doc, of, model->lists[GLTF_NODES].count, "nodes", &node));
     TYN_TRY(tyn_json_index(doc, by, samplers->count, "samplers", &index));
     double *moved = target_of(&model->nodes[node], path, &components);
     if (!moved) {

@@ -10,21 +10,20 @@
 typedef struct checker {
     const json_doc *doc;
     bool glb;
-    json_list buffers, buffer_views, accessors, materials, meshes, cameras, nodes, scenes, lights;
-    json_list images, samplers, textures;
+    const json_list *lists; // by gltf_kind
 } checker;
 
-static tyn_result check_index(const checker *c, const cJSON *parent, const char *name,
-                              const json_list *of, const char *what)
+static tyn_result check_index(const checker *c, const cJSON *parent, const char *name, gltf_kind of)
 {
     const cJSON *at = tyn_json_member(parent, name);
     int64_t unused;
-    return at ? tyn_json_index(c->doc, at, of->count, what, &unused) : TYN_OK;
+    return at ? tyn_json_index(c->doc, at, c->lists[of].count, tyn_gltf_lists[of], &unused)
+              : TYN_OK;
 }
 
 // Every element of an array of indices.
 static tyn_result check_indices(const checker *c, const cJSON *parent, const char *name,
-                                const json_list *of, const char *what)
+                                gltf_kind of)
 {
     cJSON *array;
     const cJSON *element;
@@ -32,7 +31,7 @@ static tyn_result check_indices(const checker *c, const cJSON *parent, const cha
     TYN_TRY(tyn_json_array(c->doc, parent, name, &array));
     cJSON_ArrayForEach(element, array)
     {
-        TYN_TRY(tyn_json_index(c->doc, element, of->count, what, &unused));
+        TYN_TRY(tyn_json_index(c->doc, element, c->lists[of].count, tyn_gltf_lists[of], &unused));
     }
     return TYN_OK;
 }
@@ -50,9 +49,8 @@ static tyn_result check_asset(const checker *c)
     return TYN_OK;
 }
 
-static tyn_result check_buffer(const checker *c, int64_t i)
+static tyn_result check_buffer(const checker *c, const cJSON *buffer)
 {
-    const cJSON *buffer = c->buffers.items[i];
     int64_t bytes = 0;
     const char *uri = NULL;
     TYN_TRY(tyn_json_integer(c->doc, buffer, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes",
@@ -61,7 +59,7 @@ static tyn_result check_buffer(const checker *c, int64_t i)
     if (!bytes) {
         return tyn_json_fault(c->doc, buffer, "byteLength is missing");
     }
-    if ((!uri || !*uri) && !(c->glb && i == 0)) {
+    if ((!uri || !*uri) && !(c->glb && buffer == c->lists[GLTF_BUFFERS].items[0])) {
         return tyn_json_fault(c->doc, buffer,
                               "uri is missing: only the first buffer of a .glb needs none");
     }
@@ -75,13 +73,13 @@ static tyn_result check_buffer_view(const checker *c, const cJSON *view)
     if (!index) {
         return tyn_json_fault(c->doc, view, "buffer is missing");
     }
-    TYN_TRY(tyn_json_index(c->doc, index, c->buffers.count, "buffers", &buffer));
+    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFERS].count, "buffers", &buffer));
     TYN_TRY(tyn_json_integer(c->doc, view, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
     TYN_TRY(
         tyn_json_integer(c->doc, view, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes", &length));
     TYN_TRY(tyn_json_integer(c->doc, view, "byteStride", 4, 252, "4 to 252 bytes", &stride));
-    TYN_TRY(
-        tyn_json_integer(c->doc, c->buffers.items[buffer], "byteLength", 1, MAX_INT, "", &total));
+    TYN_TRY(tyn_json_integer(c->doc, c->lists[GLTF_BUFFERS].items[buffer], "byteLength", 1, MAX_INT,
+                             "", &total));
     if (!length) {
         return tyn_json_fault(c->doc, view, "byteLength is missing");
     }
@@ -109,9 +107,9 @@ static tyn_result check_extent(const checker *c, const cJSON *at, int64_t count,
     if (!index) {
         return TYN_OK;
     }
-    TYN_TRY(tyn_json_index(c->doc, index, c->buffer_views.count, "bufferViews", &view));
+    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFER_VIEWS].count, "bufferViews", &view));
     TYN_TRY(tyn_json_integer(c->doc, at, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
-    const cJSON *v = c->buffer_views.items[view];
+    const cJSON *v = c->lists[GLTF_BUFFER_VIEWS].items[view];
     TYN_TRY(tyn_json_integer(c->doc, v, "byteLength", 1, MAX_INT, "", &length));
     TYN_TRY(tyn_json_integer(c->doc, v, "byteStride", 4, 252, "4 to 252 bytes", &stride));
     if (offset + stride * (count - 1) + bytes > length) {
@@ -177,7 +175,7 @@ static tyn_result check_image(const checker *c, const cJSON *image)
 {
     const char *uri = NULL;
     TYN_TRY(tyn_json_string(c->doc, image, "uri", &uri));
-    TYN_TRY(check_index(c, image, "bufferView", &c->buffer_views, "bufferViews"));
+    TYN_TRY(check_index(c, image, "bufferView", GLTF_BUFFER_VIEWS));
     if ((uri && *uri) == (tyn_json_member(image, "bufferView") != NULL)) {
         return tyn_json_fault(c->doc, image, "needs either a uri or a bufferView");
     }
@@ -200,8 +198,8 @@ static tyn_result check_sampler(const checker *c, const cJSON *sampler)
 
 static tyn_result check_texture(const checker *c, const cJSON *texture)
 {
-    TYN_TRY(check_index(c, texture, "sampler", &c->samplers, "samplers"));
-    return check_index(c, texture, "source", &c->images, "images");
+    TYN_TRY(check_index(c, texture, "sampler", GLTF_SAMPLERS));
+    return check_index(c, texture, "source", GLTF_IMAGES);
 }
 
 static tyn_result check_texture_info(const checker *c, const cJSON *parent, const char *name)
@@ -211,7 +209,7 @@ static tyn_result check_texture_info(const checker *c, const cJSON *parent, cons
     if (info && !tyn_json_member(info, "index")) {
         return tyn_json_fault(c->doc, info, "index is missing: an index of textures");
     }
-    return info ? check_index(c, info, "index", &c->textures, "textures") : TYN_OK;
+    return info ? check_index(c, info, "index", GLTF_TEXTURES) : TYN_OK;
 }
 
 static tyn_result check_material(const checker *c, const cJSON *material)
@@ -228,34 +226,39 @@ static tyn_result check_material(const checker *c, const cJSON *material)
     return check_texture_info(c, material, "emissiveTexture");
 }
 
+// An object all of whose members are indices of accessors; NULL: it is not there.
+static tyn_result check_attributes(const checker *c, const cJSON *attributes)
+{
+    const cJSON *element;
+    cJSON_ArrayForEach(element, attributes)
+    {
+        TYN_TRY(check_index(c, attributes, element->string, GLTF_ACCESSORS));
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_primitive(const checker *c, const cJSON *primitive)
+{
+    cJSON *attributes;
+    json_list targets = {0};
+    TYN_TRY(check_index(c, primitive, "indices", GLTF_ACCESSORS));
+    TYN_TRY(check_index(c, primitive, "material", GLTF_MATERIALS));
+    TYN_TRY(tyn_json_object(c->doc, primitive, "attributes", &attributes));
+    TYN_TRY(check_attributes(c, attributes));
+    tyn_result r = tyn_json_list(c->doc, primitive, "targets", &targets);
+    for (int64_t t = 0; !r && t < targets.count; t++) {
+        r = check_attributes(c, targets.items[t]);
+    }
+    free(targets.items);
+    return r;
+}
+
 static tyn_result check_mesh(const checker *c, const cJSON *mesh)
 {
     json_list primitives = {0};
     tyn_result r = tyn_json_list(c->doc, mesh, "primitives", &primitives);
     for (int64_t i = 0; !r && i < primitives.count; i++) {
-        const cJSON *p = primitives.items[i], *element;
-        cJSON *attributes;
-        int64_t unused;
-        r = check_index(c, p, "indices", &c->accessors, "accessors");
-        r = r ? r : check_index(c, p, "material", &c->materials, "materials");
-        r = r ? r : tyn_json_object(c->doc, p, "attributes", &attributes);
-        if (!r && attributes) {
-            cJSON_ArrayForEach(element, attributes)
-            {
-                r = r ? r
-                      : tyn_json_index(c->doc, element, c->accessors.count, "accessors", &unused);
-            }
-        }
-        json_list targets = {0};
-        r = r ? r : tyn_json_list(c->doc, p, "targets", &targets);
-        for (int64_t t = 0; !r && t < targets.count; t++) {
-            cJSON_ArrayForEach(element, targets.items[t])
-            {
-                r = r ? r
-                      : tyn_json_index(c->doc, element, c->accessors.count, "accessors", &unused);
-            }
-        }
-        free(targets.items);
+        r = check_primitive(c, primitives.items[i]);
     }
     free(primitives.items);
     return r;
@@ -296,23 +299,28 @@ static tyn_result check_node(const checker *c, const cJSON *node)
     cJSON *extensions, *lights;
     const char *name;
     TYN_TRY(tyn_json_string(c->doc, node, "name", &name));
-    TYN_TRY(check_index(c, node, "camera", &c->cameras, "cameras"));
-    TYN_TRY(check_index(c, node, "mesh", &c->meshes, "meshes"));
-    TYN_TRY(check_indices(c, node, "children", &c->nodes, "nodes"));
+    TYN_TRY(check_index(c, node, "camera", GLTF_CAMERAS));
+    TYN_TRY(check_index(c, node, "mesh", GLTF_MESHES));
+    TYN_TRY(check_indices(c, node, "children", GLTF_NODES));
     TYN_TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
     TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
-    return check_index(c, lights, "light", &c->lights, "lights");
+    return check_index(c, lights, "light", GLTF_LIGHTS);
+}
+
+static tyn_result check_scene(const checker *c, const cJSON *scene)
+{
+    return check_indices(c, scene, "nodes", GLTF_NODES);
 }
 
 // Every node has at most one parent and is its own ancestor nowhere.
 static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
 {
-    for (int64_t i = 0; i < c->nodes.count; i++) {
+    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
         parent[i] = -1;
     }
-    for (int64_t i = 0; i < c->nodes.count; i++) {
+    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
         const cJSON *child;
-        cJSON_ArrayForEach(child, tyn_json_member(c->nodes.items[i], "children"))
+        cJSON_ArrayForEach(child, tyn_json_member(c->lists[GLTF_NODES].items[i], "children"))
         {
             int64_t k = (int64_t)child->valuedouble;
             if (parent[k] >= 0) {
@@ -323,24 +331,24 @@ static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
         }
     }
     // Walk upwards; 1 = on this walk, 2 = known to end at a root.
-    for (int64_t i = 0; i < c->nodes.count; i++) {
+    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
         int64_t k = i;
         for (; k >= 0 && !state[k]; k = parent[k]) {
             state[k] = 1;
         }
         if (k >= 0 && state[k] == 1) {
-            return tyn_json_fault(c->doc, tyn_json_member(c->nodes.items[k], "children"),
+            return tyn_json_fault(c->doc,
+                                  tyn_json_member(c->lists[GLTF_NODES].items[k], "children"),
                                   "nodes form a cycle: node %lld is below itself", (long long)k);
         }
         for (k = i; k >= 0 && state[k] == 1; k = parent[k]) {
             state[k] = 2;
         }
     }
-    for (int64_t s = 0; s < c->scenes.count; s++) {
+    for (int64_t s = 0; s < c->lists[GLTF_SCENES].count; s++) {
         const cJSON *root;
-        TYN_TRY(check_indices(c, c->scenes.items[s], "nodes", &c->nodes, "nodes"));
-        memset(state, 0, (size_t)c->nodes.count);
-        cJSON_ArrayForEach(root, tyn_json_member(c->scenes.items[s], "nodes"))
+        memset(state, 0, (size_t)c->lists[GLTF_NODES].count);
+        cJSON_ArrayForEach(root, tyn_json_member(c->lists[GLTF_SCENES].items[s], "nodes"))
         {
             int64_t k = (int64_t)root->valuedouble;
             if (parent[k] >= 0 || state[k]) {
@@ -352,12 +360,15 @@ static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
     return TYN_OK;
 }
 
-static tyn_result check_nodes(const checker *c)
+static tyn_result check_light(const checker *c, const cJSON *light)
 {
-    for (int64_t i = 0; i < c->nodes.count; i++) {
-        TYN_TRY(check_node(c, c->nodes.items[i]));
-    }
-    size_t count = (size_t)c->nodes.count + 1;
+    tyn_light unused;
+    return tyn_gltf_read_light(&unused, c->doc, light);
+}
+
+static tyn_result check_hierarchy(const checker *c)
+{
+    size_t count = (size_t)c->lists[GLTF_NODES].count + 1;
     int64_t *parent = calloc(count, sizeof *parent);
     uint8_t *state = calloc(count, 1);
     tyn_result r = TYN_ERR_MEMORY;
@@ -371,70 +382,43 @@ static tyn_result check_nodes(const checker *c)
     return r;
 }
 
-static tyn_result check_all(checker *c)
+// ---- all --------------------------------------------------------------------------------------
+
+const char *const tyn_gltf_lists[GLTF_NUM_LISTS] = {
+    [GLTF_BUFFERS] = "buffers",     [GLTF_BUFFER_VIEWS] = "bufferViews",
+    [GLTF_ACCESSORS] = "accessors", [GLTF_IMAGES] = "images",
+    [GLTF_SAMPLERS] = "samplers",   [GLTF_TEXTURES] = "textures",
+    [GLTF_MATERIALS] = "materials", [GLTF_MESHES] = "meshes",
+    [GLTF_CAMERAS] = "cameras",     [GLTF_LIGHTS] = "lights",
+    [GLTF_SCENES] = "scenes",       [GLTF_NODES] = "nodes",
+};
+
+static tyn_result (*const checks[GLTF_NUM_LISTS])(const checker *c, const cJSON *element) = {
+    [GLTF_BUFFERS] = check_buffer,     [GLTF_BUFFER_VIEWS] = check_buffer_view,
+    [GLTF_ACCESSORS] = check_accessor, [GLTF_IMAGES] = check_image,
+    [GLTF_SAMPLERS] = check_sampler,   [GLTF_TEXTURES] = check_texture,
+    [GLTF_MATERIALS] = check_material, [GLTF_MESHES] = check_mesh,
+    [GLTF_CAMERAS] = check_camera,     [GLTF_LIGHTS] = check_light,
+    [GLTF_SCENES] = check_scene,       [GLTF_NODES] = check_node,
+};
+
+tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NUM_LISTS])
 {
-    const json_doc *doc = c->doc;
+    const checker c = {.doc = doc, .glb = glb, .lists = lists};
     cJSON *extensions, *lights;
-    TYN_TRY(check_asset(c));
+    TYN_TRY(check_asset(&c));
     TYN_TRY(tyn_gltf_check_required(doc));
-    TYN_TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
-    TYN_TRY(tyn_json_list(doc, doc->root, "bufferViews", &c->buffer_views));
-    TYN_TRY(tyn_json_list(doc, doc->root, "accessors", &c->accessors));
-    TYN_TRY(tyn_json_list(doc, doc->root, "images", &c->images));
-    TYN_TRY(tyn_json_list(doc, doc->root, "samplers", &c->samplers));
-    TYN_TRY(tyn_json_list(doc, doc->root, "textures", &c->textures));
-    TYN_TRY(tyn_json_list(doc, doc->root, "materials", &c->materials));
-    TYN_TRY(tyn_json_list(doc, doc->root, "meshes", &c->meshes));
-    TYN_TRY(tyn_json_list(doc, doc->root, "cameras", &c->cameras));
-    TYN_TRY(tyn_json_list(doc, doc->root, "nodes", &c->nodes));
-    TYN_TRY(tyn_json_list(doc, doc->root, "scenes", &c->scenes));
     TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
     TYN_TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
-    TYN_TRY(tyn_json_list(doc, lights, "lights", &c->lights));
-    for (int64_t i = 0; i < c->buffers.count; i++) {
-        TYN_TRY(check_buffer(c, i));
+    for (int k = 0; k < GLTF_NUM_LISTS; k++) {
+        TYN_TRY(tyn_json_list(doc, k == GLTF_LIGHTS ? lights : doc->root, tyn_gltf_lists[k],
+                              &lists[k]));
     }
-    for (int64_t i = 0; i < c->buffer_views.count; i++) {
-        TYN_TRY(check_buffer_view(c, c->buffer_views.items[i]));
+    for (int k = 0; k < GLTF_NUM_LISTS; k++) {
+        for (int64_t i = 0; i < lists[k].count; i++) {
+            TYN_TRY(checks[k](&c, lists[k].items[i]));
+        }
     }
-    for (int64_t i = 0; i < c->accessors.count; i++) {
-        TYN_TRY(check_accessor(c, c->accessors.items[i]));
-    }
-    for (int64_t i = 0; i < c->images.count; i++) {
-        TYN_TRY(check_image(c, c->images.items[i]));
-    }
-    for (int64_t i = 0; i < c->samplers.count; i++) {
-        TYN_TRY(check_sampler(c, c->samplers.items[i]));
-    }
-    for (int64_t i = 0; i < c->textures.count; i++) {
-        TYN_TRY(check_texture(c, c->textures.items[i]));
-    }
-    for (int64_t i = 0; i < c->materials.count; i++) {
-        TYN_TRY(check_material(c, c->materials.items[i]));
-    }
-    for (int64_t i = 0; i < c->meshes.count; i++) {
-        TYN_TRY(check_mesh(c, c->meshes.items[i]));
-    }
-    for (int64_t i = 0; i < c->cameras.count; i++) {
-        TYN_TRY(check_camera(c, c->cameras.items[i]));
-    }
-    for (int64_t i = 0; i < c->lights.count; i++) {
-        tyn_light unused;
-        TYN_TRY(tyn_gltf_read_light(&unused, c->doc, c->lights.items[i]));
-    }
-    TYN_TRY(check_index(c, doc->root, "scene", &c->scenes, "scenes"));
-    return check_nodes(c);
-}
-
-tyn_result tyn_gltf_check(const json_doc *doc, bool glb)
-{
-    checker c = {.doc = doc, .glb = glb};
-    tyn_result r = check_all(&c);
-    const json_list *lists[] = {&c.buffers, &c.buffer_views, &c.accessors, &c.materials,
-                                &c.meshes,  &c.cameras,      &c.nodes,     &c.scenes,
-                                &c.lights,  &c.images,       &c.samplers,  &c.textures};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
-        free(lists[i]->items);
-    }
-    return r;
+    TYN_TRY(check_index(&c, doc->root, "scene", GLTF_SCENES));
+    return check_hierarchy(&c);
 }

@@ -31,7 +31,8 @@ static tyn_result read_attribute(gltf_instances *instances, const gltf_data *dat
     if (!at) {
         return TYN_OK;
     }
-    TYN_TRY(tyn_json_index(data->doc, at, data->accessors.count, "accessors", &unused));
+    TYN_TRY(tyn_json_index(data->doc, at, data->model->lists[GLTF_ACCESSORS].count, "accessors",
+                           &unused));
     TYN_TRY(tyn_gltf_read_floats(data, at, components, components, out));
     if (instances->count && instances->count != out->count) {
         return tyn_json_fault(data->doc, at, "has %u elements, the one before has %u", out->count,

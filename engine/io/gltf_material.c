@@ -19,10 +19,10 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     const json_doc *doc = data->doc;
     memset(m, 0, sizeof *m);
     m->scene = scene;
+    m->list = &data->model->lists[GLTF_MATERIALS];
     TYN_TRY(tyn_gltf_textures_open(&m->textures, data, scene));
-    TYN_TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
-    m->loaded = calloc((size_t)m->list.count + 1, sizeof *m->loaded);
-    m->is_loaded = calloc((size_t)m->list.count + 1, sizeof *m->is_loaded);
+    m->loaded = calloc((size_t)m->list->count + 1, sizeof *m->loaded);
+    m->is_loaded = calloc((size_t)m->list->count + 1, sizeof *m->is_loaded);
     if (!m->loaded || !m->is_loaded) {
         tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
         return TYN_ERR_MEMORY;
@@ -59,11 +59,10 @@ void tyn_gltf_materials_close(gltf_materials *m)
         }
     }
     tyn_gltf_textures_close(&m->textures);
-    for (int64_t i = 0; m->loaded && i <= m->list.count; i++) {
+    for (int64_t i = 0; m->loaded && i <= m->list->count; i++) {
         close_picture(m->loaded[i].alpha);
         close_picture(m->loaded[i].glow);
     }
-    free(m->list.items);
     free(m->loaded);
     free(m->painted);
     free(m->is_loaded);
@@ -73,11 +72,11 @@ static void lack(gltf_materials *m, int64_t index, gltf_material_lack which)
 {
     if (m->lacks[which].count++ == 0) {
         const cJSON *name =
-            index < m->list.count ? tyn_json_member(m->list.items[index], "name") : NULL;
+            index < m->list->count ? tyn_json_member(m->list->items[index], "name") : NULL;
         char *text = m->lacks[which].name;
         if (cJSON_IsString(name)) {
             snprintf(text, sizeof m->lacks[which].name, "'%s'", name->valuestring);
-        } else if (index < m->list.count) {
+        } else if (index < m->list->count) {
             snprintf(text, sizeof m->lacks[which].name, "%lld", (long long)index);
         } else {
             snprintf(text, sizeof m->lacks[which].name, "of meshes without one");
@@ -277,7 +276,7 @@ static void look_at_rest(gltf_materials *m, int64_t index, const cJSON *json)
 
 tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_material **out)
 {
-    const int64_t at = index < 0 ? m->list.count : index;
+    const int64_t at = index < 0 ? m->list->count : index;
     gltf_material *loaded = &m->loaded[at];
     *out = loaded;
     if (m->is_loaded[at]) {
@@ -287,11 +286,11 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     *loaded = (gltf_material){
         .index = at, .surface.texture = TYN_NO_TEXTURE, .color = plain, .glow_place = plain};
     m->is_loaded[at] = true;
-    if (at == m->list.count) { // albedo = 1 (1 - 1)
+    if (at == m->list->count) { // albedo = 1 (1 - 1)
         lack(m, at, LACK_METAL);
         return TYN_OK;
     }
-    const cJSON *json = m->list.items[at];
+    const cJSON *json = m->list->items[at];
     double factors[TYN_MATERIAL_NUM_FIELDS][4];
     TYN_TRY(read_factors(m->textures.data->doc, json, factors));
     TYN_TRY(read_diffuse_factor(m->textures.data->doc, json, factors[TYN_MATERIAL_ALBEDO]));

@@ -33,8 +33,8 @@ typedef enum gltf_material_lack {
 typedef struct gltf_materials {
     tyn_scene *scene;
     gltf_textures textures;
-    json_list list;
-    gltf_material *loaded; // list.count of them and, last, glTF's default
+    const json_list *list;
+    gltf_material *loaded; // list->count of them and, last, glTF's default
     bool *is_loaded;
     struct gltf_painted_material
         *painted; // open addressing: which of the scene's materials are what of these

@@ -28,9 +28,9 @@ tyn_result tyn_gltf_meshes_open(gltf_meshes *m, const json_doc *doc, const gltf_
 {
     memset(m, 0, sizeof *m);
     m->facets = MAX_FACETS;
-    tyn_result r = tyn_gltf_data_open(&m->data, doc, model);
-    r = r ? r : tyn_gltf_materials_open(&m->materials, &m->data, scene);
-    return r ? r : tyn_json_list(doc, doc->root, "meshes", &m->list);
+    m->data = (gltf_data){doc, model};
+    m->list = &model->lists[GLTF_MESHES];
+    return tyn_gltf_materials_open(&m->materials, &m->data, scene);
 }
 
 void tyn_gltf_meshes_close(gltf_meshes *m)
@@ -55,13 +55,11 @@ void tyn_gltf_meshes_close(gltf_meshes *m)
     if (scene) {
         tyn_gltf_materials_close(&m->materials);
     }
-    tyn_gltf_data_close(&m->data);
-    free(m->list.items);
 }
 
 static void lack(gltf_meshes *m, int64_t mesh, int which)
 {
-    const cJSON *name = tyn_json_member(m->list.items[mesh], "name");
+    const cJSON *name = tyn_json_member(m->list->items[mesh], "name");
     if (m->lacks[which].count++ == 0) {
         char *text = m->lacks[which].name;
         if (cJSON_IsString(name)) {
@@ -482,7 +480,7 @@ tyn_result tyn_gltf_mesh_add(gltf_meshes *m, const cJSON *node, int64_t mesh,
     if (tyn_json_member(node, "skin")) {
         lack(m, mesh, LACK_SKIN);
     }
-    tyn_result r = tyn_json_list(m->data.doc, m->list.items[mesh], "primitives", &primitives);
+    tyn_result r = tyn_json_list(m->data.doc, m->list->items[mesh], "primitives", &primitives);
     for (int64_t i = 0; !r && i < primitives.count; i++) {
         primitive p = {.json = primitives.items[i], .mesh = mesh};
         r = read_primitive(m, &p);

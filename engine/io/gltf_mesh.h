@@ -5,7 +5,7 @@
 typedef struct gltf_meshes {
     gltf_data data;
     gltf_materials materials;
-    json_list list;
+    const json_list *list;
     int64_t facets;                      // that triangles may still be cut into
     uint64_t visited;                    // vertices and indices that were looked at
     uint32_t vertex_room, triangle_room; // that the scene's arrays have

@@ -99,40 +99,40 @@ static tyn_result read_node(const json_doc *doc, const cJSON *json, gltf_node *n
 
 tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const gltf_buffer *chunk)
 {
-    const cJSON *nodes = tyn_json_member(doc->root, "nodes"), *node, *child;
-    const cJSON *buffers = tyn_json_member(doc->root, "buffers"), *buffer;
-    const size_t most_nodes = (size_t)cJSON_GetArraySize(nodes) + 1;
-    *model = (gltf_model){
-        .nodes = calloc(most_nodes, sizeof *model->nodes),
-        .buffers = calloc((size_t)cJSON_GetArraySize(buffers) + 1, sizeof *model->buffers)};
+    const json_list *nodes = &model->lists[GLTF_NODES], *buffers = &model->lists[GLTF_BUFFERS];
+    *model = (gltf_model){0};
+    TYN_TRY(tyn_gltf_check(doc, chunk != NULL, model->lists));
+    model->nodes = calloc((size_t)nodes->count + 1, sizeof *model->nodes);
+    model->buffers = calloc((size_t)buffers->count + 1, sizeof *model->buffers);
     if (!model->nodes || !model->buffers) {
         tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes and buffers",
                       doc->file);
         return TYN_ERR_MEMORY;
     }
-    for (size_t i = 0; i < most_nodes; i++) {
+    for (int64_t i = 0; i < nodes->count; i++) {
         model->nodes[i].parent = -1;
     }
-    cJSON_ArrayForEach(node, nodes)
-    {
-        TYN_TRY(read_node(doc, node, &model->nodes[model->num_nodes]));
-        cJSON_ArrayForEach(child, tyn_json_member(node, "children"))
+    for (int64_t i = 0; i < nodes->count; i++) {
+        const cJSON *child;
+        TYN_TRY(read_node(doc, nodes->items[i], &model->nodes[i]));
+        cJSON_ArrayForEach(child, tyn_json_member(nodes->items[i], "children"))
         {
-            model->nodes[(int64_t)child->valuedouble].parent = model->num_nodes;
+            model->nodes[(int64_t)child->valuedouble].parent = i;
         }
-        model->num_nodes++;
     }
-    cJSON_ArrayForEach(buffer, buffers)
-    {
-        TYN_TRY(read_buffer(doc, buffer, chunk, &model->buffers[model->num_buffers++]));
+    for (int64_t i = 0; i < buffers->count; i++) {
+        TYN_TRY(read_buffer(doc, buffers->items[i], chunk, &model->buffers[i]));
     }
     return TYN_OK;
 }
 
 void tyn_gltf_model_finish(gltf_model *model)
 {
-    for (int64_t i = 0; i < model->num_buffers; i++) {
+    for (int64_t i = 0; model->buffers && i < model->lists[GLTF_BUFFERS].count; i++) {
         free(model->buffers[i].owned);
+    }
+    for (int k = 0; k < GLTF_NUM_LISTS; k++) {
+        free(model->lists[k].items);
     }
     free(model->buffers);
     free(model->nodes);

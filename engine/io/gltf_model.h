@@ -1,6 +1,6 @@
 // gltf_model.h -- nodes and buffers of a glTF file.
 #pragma once
-#include "io/json.h"
+#include "io/gltf_check.h"
 
 typedef struct gltf_node {
     const cJSON *json;
@@ -18,12 +18,12 @@ typedef struct gltf_buffer {
 } gltf_buffer;
 
 typedef struct gltf_model {
-    gltf_node *nodes;
-    gltf_buffer *buffers;
-    int64_t num_nodes, num_buffers;
+    json_list lists[GLTF_NUM_LISTS];
+    gltf_node *nodes;     // of lists[GLTF_NODES]
+    gltf_buffer *buffers; // of lists[GLTF_BUFFERS]
 } gltf_model;
 
-// The document has passed tyn_gltf_check. `chunk`: the binary chunk of a .glb, which the model may point into.
+// Checks the document first. `chunk`: the binary chunk of a .glb, which the model may point into; NULL: it is none.
 tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const gltf_buffer *chunk);
 void tyn_gltf_model_finish(gltf_model *model);
 

@@ -12,20 +12,20 @@
 tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_scene *scene)
 {
     const json_doc *doc = data->doc;
-    *t = (gltf_textures){.data = data, .scene = scene, .surfaces = &scene->surfaces};
-    tyn_result r = tyn_json_list(doc, doc->root, "textures", &t->textures);
-    r = r ? r : tyn_json_list(doc, doc->root, "images", &t->images);
-    r = r ? r : tyn_json_list(doc, doc->root, "samplers", &t->samplers);
-    if (r) {
-        return r;
-    }
-    t->loaded = malloc(((size_t)t->textures.count + 1) * sizeof *t->loaded);
-    t->missing = calloc((size_t)t->textures.count + 1, sizeof *t->missing);
+    const json_list *lists = data->model->lists;
+    *t = (gltf_textures){.data = data,
+                         .scene = scene,
+                         .surfaces = &scene->surfaces,
+                         .textures = &lists[GLTF_TEXTURES],
+                         .images = &lists[GLTF_IMAGES],
+                         .samplers = &lists[GLTF_SAMPLERS]};
+    t->loaded = malloc(((size_t)t->textures->count + 1) * sizeof *t->loaded);
+    t->missing = calloc((size_t)t->textures->count + 1, sizeof *t->missing);
     if (!t->loaded || !t->missing) {
         tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its textures", doc->file);
         return TYN_ERR_MEMORY;
     }
-    for (int64_t i = 0; i < t->textures.count; i++) {
+    for (int64_t i = 0; i < t->textures->count; i++) {
         t->loaded[i] = TYN_NO_TEXTURE;
     }
     return TYN_OK;
@@ -34,7 +34,7 @@ tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_s
 static char *texture_name(const gltf_textures *t, const cJSON *texture)
 {
     const cJSON *source = tyn_json_member(texture, "source");
-    const cJSON *at[2] = {texture, source ? t->images.items[(int64_t)source->valuedouble] : NULL};
+    const cJSON *at[2] = {texture, source ? t->images->items[(int64_t)source->valuedouble] : NULL};
     for (int i = 0; i < 2; i++) {
         const cJSON *name = tyn_json_member(at[i], "name");
         if (cJSON_IsString(name) && name->valuestring[0]) {
@@ -50,14 +50,14 @@ static void warn_of_missing(const gltf_textures *t)
 {
     uint32_t count = 0;
     int64_t first = -1;
-    for (int64_t i = 0; t->missing && i < t->textures.count; i++) {
+    for (int64_t i = 0; t->missing && i < t->textures->count; i++) {
         count += t->missing[i];
         first = t->missing[i] && first < 0 ? i : first;
     }
     if (!count) {
         return;
     }
-    char *name = texture_name(t, t->textures.items[first]), more[32] = "";
+    char *name = texture_name(t, t->textures->items[first]), more[32] = "";
     if (count > 1) {
         snprintf(more, sizeof more, " and %u more", count - 1);
     }
@@ -72,9 +72,6 @@ void tyn_gltf_textures_close(gltf_textures *t)
     if (t->scene) {
         warn_of_missing(t);
     }
-    free(t->textures.items);
-    free(t->images.items);
-    free(t->samplers.items);
     free(t->loaded);
     free(t->missing);
 }
@@ -163,7 +160,7 @@ static tyn_wrap wrap_mode(const cJSON *sampler, const char *name)
 
 static tyn_result read_texture(const gltf_textures *t, int64_t index, tyn_texture *out)
 {
-    const cJSON *texture = t->textures.items[index], *source = tyn_json_member(texture, "source");
+    const cJSON *texture = t->textures->items[index], *source = tyn_json_member(texture, "source");
     const cJSON *sampler = tyn_json_member(texture, "sampler");
     *out = (tyn_texture){0};
     if (!source && !tyn_json_member(texture, "extensions")) {
@@ -174,11 +171,11 @@ static tyn_result read_texture(const gltf_textures *t, int64_t index, tyn_textur
         return grey(out);
     }
     if (sampler) {
-        const cJSON *modes = t->samplers.items[(int64_t)sampler->valuedouble];
+        const cJSON *modes = t->samplers->items[(int64_t)sampler->valuedouble];
         out->wrap[0] = wrap_mode(modes, "wrapS");
         out->wrap[1] = wrap_mode(modes, "wrapT");
     }
-    return read_image(t->data, t->images.items[(int64_t)source->valuedouble], out,
+    return read_image(t->data, t->images->items[(int64_t)source->valuedouble], out,
                       &t->missing[index]);
 }
 
@@ -202,7 +199,7 @@ tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *i
             free(texture.texels);
             return tyn_json_fault(t->data->doc, info, "no memory for its texture");
         }
-        texture.name = texture_name(t, t->textures.items[from]);
+        texture.name = texture_name(t, t->textures->items[from]);
         s->textures = grown;
         t->loaded[from] = s->num_textures;
         grown[s->num_textures++] = texture;

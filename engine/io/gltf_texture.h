@@ -6,7 +6,7 @@ typedef struct gltf_textures {
     const gltf_data *data;
     tyn_scene *scene;
     tyn_surfaces *surfaces; // of the scene
-    json_list textures, images, samplers;
+    const json_list *textures, *images, *samplers;
     bool *missing;    // for every texture: it is not there
     uint32_t *loaded; // for every texture its index in surfaces->textures, or TYN_NO_TEXTURE
 } gltf_textures;
