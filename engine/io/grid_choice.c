@@ -49,34 +49,28 @@ tyn_grid_role tyn_grid_role_of(const char *name)
     return TYN_ROLE_UNKNOWN;
 }
 
-typedef struct choice {
-    const char *const *names, *const *types;
-    const bool *scalar, *vector;
-    uint32_t count;
-} choice;
-
 static void add(char *text, size_t room, const char *separator, const char *name, const char *type)
 {
     const size_t used = strlen(text);
     snprintf(text + used, room - used, "%s\"%.60s\" (%s)", used ? separator : "", name, type);
 }
 
-static int find(const choice *c, const tyn_grid_job *job)
+static int find(const tyn_grid_entry *grids, uint32_t count, const tyn_grid_job *job)
 {
     int best = -1, rank = 0;
-    for (uint32_t i = 0; i < c->count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         if (job->grid) {
-            if (strcmp(c->names[i], job->grid) == 0) {
+            if (strcmp(grids[i].name, job->grid) == 0) {
                 return (int)i;
             }
             continue;
         }
-        const tyn_grid_role role = tyn_grid_role_of(c->names[i]);
-        const int now = !c->scalar[i]                         ? 0
-                        : strcmp(c->names[i], "density") == 0 ? 3
-                        : role == TYN_ROLE_DENSITY            ? 2
-                        : role == TYN_ROLE_UNKNOWN            ? 1
-                                                              : 0;
+        const tyn_grid_role role = tyn_grid_role_of(grids[i].name);
+        const int now = !grids[i].scalar                        ? 0
+                        : strcmp(grids[i].name, "density") == 0 ? 3
+                        : role == TYN_ROLE_DENSITY              ? 2
+                        : role == TYN_ROLE_UNKNOWN              ? 1
+                                                                : 0;
         if (now > rank) {
             rank = now;
             best = (int)i;
@@ -86,7 +80,7 @@ static int find(const choice *c, const tyn_grid_job *job)
 }
 
 // Of the other grids those that somebody may look for.
-static void tell_others(tyn_grid_job *job, const choice *c, int chosen)
+static void tell_others(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t count, int chosen)
 {
     static const char *const words_of[] = {
         [TYN_ROLE_HEAT] =
@@ -98,13 +92,13 @@ static void tell_others(tyn_grid_job *job, const choice *c, int chosen)
     job->left_out[0] = '\0';
     for (int role = TYN_ROLE_HEAT; role <= TYN_ROLE_VELOCITY; role++) {
         char names[160] = "";
-        for (uint32_t i = 0; i < c->count; i++) {
+        for (uint32_t i = 0; i < count; i++) {
             const bool is = (int)i != chosen && !(job->used >> role & 1) &&
-                            (int)tyn_grid_role_of(c->names[i]) == role;
+                            (int)tyn_grid_role_of(grids[i].name) == role;
             if (is && strlen(names) < 100) {
                 const size_t used = strlen(names);
                 snprintf(names + used, sizeof names - used, "%s\"%.40s\"", used ? ", " : "",
-                         c->names[i]);
+                         grids[i].name);
             }
         }
         const size_t used = strlen(job->left_out);
@@ -115,33 +109,33 @@ static void tell_others(tyn_grid_job *job, const choice *c, int chosen)
     }
 }
 
-int tyn_volume_choose(tyn_grid_job *job, const char *const *names, const char *const *types,
-                      const bool *scalar, const bool *vector, uint32_t count, const char *file)
+int tyn_volume_choose(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t count,
+                      const char *file)
 {
-    const choice c = {names, types, scalar, vector, count};
-    const int chosen = find(&c, job);
-    if (chosen >= 0 && !job->grid && tyn_grid_role_of(names[chosen]) == TYN_ROLE_UNKNOWN) {
+    const int chosen = find(grids, count, job);
+    if (chosen >= 0 && !job->grid && tyn_grid_role_of(grids[chosen].name) == TYN_ROLE_UNKNOWN) {
         for (uint32_t i = 0; i < count; i++) {
-            job->guessed |= (int)i != chosen && scalar[i];
+            job->guessed |= (int)i != chosen && grids[i].scalar;
         }
     }
-    if (chosen >= 0 && (scalar[chosen] || (job->use == TYN_GRID_COLOR && vector[chosen]))) {
-        tell_others(job, &c, chosen);
+    if (chosen >= 0 &&
+        (grids[chosen].scalar || (job->use == TYN_GRID_COLOR && grids[chosen].vector))) {
+        tell_others(job, grids, count, chosen);
         return chosen;
     }
     if (chosen >= 0) {
         tyn_log_print(job->log, TYN_LOG_ERROR,
                       "%s: grid \"%.100s\" holds %s values: must be float, half or quantised "
                       "float%s",
-                      file, names[chosen], types[chosen],
+                      file, grids[chosen].name, grids[chosen].type,
                       job->use == TYN_GRID_COLOR ? ", or vectors of three floats" : "");
         return -1;
     }
     char list[512] = "";
     bool any = false;
     for (uint32_t i = 0; i < count; i++) {
-        add(list, sizeof list, ", ", names[i], types[i]);
-        any |= scalar[i];
+        add(list, sizeof list, ", ", grids[i].name, grids[i].type);
+        any |= grids[i].scalar;
     }
     if (job->grid) {
         tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no grid \"%.100s\": there are %s", file,

@@ -142,25 +142,13 @@ static bool is_vector(const entry *e)
 
 static const entry *choose(const contents *list, tyn_grid_job *job, const input *in)
 {
-    const char **names = calloc(list->count + 1, sizeof *names);
-    const char **types = calloc(list->count + 1, sizeof *types);
-    bool *readable = calloc(list->count + 1, sizeof *readable);
-    bool *vector = calloc(list->count + 1, sizeof *vector);
-    int chosen = -1;
-    const bool room = names && types && readable && vector;
-    for (uint32_t i = 0; room && i < list->count; i++) {
-        names[i] = list->grids[i].name;
-        types[i] = type_name(&list->grids[i]);
-        readable[i] = is_readable(&list->grids[i]);
-        vector[i] = is_vector(&list->grids[i]);
+    tyn_grid_entry *grids = calloc(list->count + 1, sizeof *grids);
+    for (uint32_t i = 0; grids && i < list->count; i++) {
+        const entry *e = &list->grids[i];
+        grids[i] = (tyn_grid_entry){e->name, type_name(e), is_readable(e), is_vector(e)};
     }
-    if (room) {
-        chosen = tyn_volume_choose(job, names, types, readable, vector, list->count, in->file);
-    }
-    free(names);
-    free(types);
-    free(readable);
-    free(vector);
+    const int chosen = grids ? tyn_volume_choose(job, grids, list->count, in->file) : -1;
+    free(grids);
     return chosen < 0 ? NULL : &list->grids[chosen];
 }
 
@@ -397,48 +385,40 @@ static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t 
     return true;
 }
 
-static bool copy_lower(extraction *x, pnanovdb_lower_handle_t lower, const int64_t origin[3])
+// A node between root and leaves: an upper one, whose children are lower ones, or a lower one, whose children are leaves.
+static bool copy_inner(extraction *x, pnanovdb_address_t node, bool is_upper,
+                       const int64_t origin[3])
 {
+    const pnanovdb_upper_handle_t upper = {node};
+    const pnanovdb_lower_handle_t lower = {node};
+    const uint32_t bits = is_upper ? 5 : 4, mask = (1u << bits) - 1; // children along an axis
+    const int64_t side = is_upper ? 128 : 8;                         // of a child, voxels
     region r;
-    if (!node_fits(x, lower.address, x->layout->lower_size)) {
+    if (!node_fits(x, node, is_upper ? x->layout->upper_size : x->layout->lower_size)) {
         return false;
     }
-    for (uint32_t n = 0; n < PNANOVDB_LOWER_TABLE_COUNT; n++) {
-        const int64_t at[3] = {origin[0] + 8 * (n >> 8), origin[1] + 8 * (n >> 4 & 15),
-                               origin[2] + 8 * (n & 15)};
-        if (!clip(x, at, 8, &r)) {
+    for (uint32_t n = 0; n < 1u << 3 * bits; n++) {
+        const int64_t at[3] = {origin[0] + side * (n >> 2 * bits),
+                               origin[1] + side * (n >> bits & mask),
+                               origin[2] + side * (n & mask)};
+        if (!clip(x, at, side, &r)) {
             continue;
         }
-        bool child = pnanovdb_lower_get_child_mask(x->buf, lower, n);
-        pnanovdb_address_t value = pnanovdb_lower_get_table_address(x->type, x->buf, lower, n);
-        if (!child && !copy_tile(x, &r, value)) {
-            return false;
+        bool copied;
+        if (is_upper ? pnanovdb_upper_get_child_mask(x->buf, upper, n)
+                     : pnanovdb_lower_get_child_mask(x->buf, lower, n)) {
+            copied =
+                is_upper
+                    ? copy_inner(x, pnanovdb_upper_get_child(x->type, x->buf, upper, n).address,
+                                 false, at)
+                    : copy_leaf(x, pnanovdb_lower_get_child(x->type, x->buf, lower, n), at);
+        } else {
+            copied =
+                copy_tile(x, &r,
+                          is_upper ? pnanovdb_upper_get_table_address(x->type, x->buf, upper, n)
+                                   : pnanovdb_lower_get_table_address(x->type, x->buf, lower, n));
         }
-        if (child && !copy_leaf(x, pnanovdb_lower_get_child(x->type, x->buf, lower, n), at)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool copy_upper(extraction *x, pnanovdb_upper_handle_t upper, const int64_t origin[3])
-{
-    region r;
-    if (!node_fits(x, upper.address, x->layout->upper_size)) {
-        return false;
-    }
-    for (uint32_t n = 0; n < PNANOVDB_UPPER_TABLE_COUNT; n++) {
-        const int64_t at[3] = {origin[0] + 128 * (n >> 10), origin[1] + 128 * (n >> 5 & 31),
-                               origin[2] + 128 * (n & 31)};
-        if (!clip(x, at, 128, &r)) {
-            continue;
-        }
-        bool child = pnanovdb_upper_get_child_mask(x->buf, upper, n);
-        pnanovdb_address_t value = pnanovdb_upper_get_table_address(x->type, x->buf, upper, n);
-        if (!child && !copy_tile(x, &r, value)) {
-            return false;
-        }
-        if (child && !copy_lower(x, pnanovdb_upper_get_child(x->type, x->buf, upper, n), at)) {
+        if (!copied) {
             return false;
         }
     }
@@ -482,7 +462,8 @@ static bool copy_root(extraction *x, pnanovdb_root_handle_t root)
         if (!child && !copy_tile(x, &r, value)) {
             return false;
         }
-        if (child && !copy_upper(x, pnanovdb_root_get_child(x->type, x->buf, root, tile), origin)) {
+        if (child && !copy_inner(x, pnanovdb_root_get_child(x->type, x->buf, root, tile).address,
+                                 true, origin)) {
             return false;
         }
     }
@@ -707,15 +688,5 @@ tyn_result tyn_nvdb_read_file(tyn_grid_job *job, const char *path)
         r = tyn_nvdb_read(job, bytes, size, path);
         free(bytes);
     }
-    return r;
-}
-
-tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
-                          const char *file, uint64_t *clamped_negative, const tyn_log *log)
-{
-    tyn_grid_job job = {.grid = grid, .log = log};
-    const tyn_result r = tyn_nvdb_read(&job, bytes, size, file);
-    *volume = job.volume;
-    *clamped_negative += job.clamped;
     return r;
 }

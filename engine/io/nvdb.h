@@ -6,7 +6,3 @@
 // float, half and the quantised float types, vec3f for colours. Faults are one line that names `file`.
 tyn_result tyn_nvdb_read(tyn_grid_job *job, const void *bytes, size_t size, const char *file);
 tyn_result tyn_nvdb_read_file(tyn_grid_job *job, const char *path);
-
-// A density by itself.
-tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
-                          const char *file, uint64_t *clamped_negative, const tyn_log *log);

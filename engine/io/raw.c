@@ -49,14 +49,3 @@ tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
     }
     return tyn_grid_seal(job, file, NULL);
 }
-
-tyn_result tyn_raw_parse(tyn_volume *volume, const void *bytes, size_t num_bytes,
-                         const int64_t size[3], tyn_raw_type type, const char *file,
-                         uint64_t *clamped_negative, const tyn_log *log)
-{
-    tyn_grid_job job = {.log = log};
-    const tyn_result r = tyn_raw_read(&job, bytes, num_bytes, size, 1, type, file);
-    *volume = job.volume;
-    *clamped_negative += job.clamped;
-    return r;
-}

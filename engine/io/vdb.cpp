@@ -39,16 +39,11 @@ std::vector<entry> list_grids(openvdb::io::File &file)
 
 int choose(const std::vector<entry> &entries, tyn_grid_job *job, const char *path)
 {
-    std::vector<const char *> names, types;
-    bool scalar[1024] = {}, vector[1024] = {};
-    for (size_t i = 0; i < entries.size() && i < 1024; i++) {
-        names.push_back(entries[i].name.c_str());
-        types.push_back(entries[i].type.c_str());
-        scalar[i] = entries[i].scalar;
-        vector[i] = entries[i].vector;
+    std::vector<tyn_grid_entry> grids;
+    for (const entry &e : entries) {
+        grids.push_back({e.name.c_str(), e.type.c_str(), e.scalar, e.vector});
     }
-    return tyn_volume_choose(job, names.data(), types.data(), scalar, vector,
-                             uint32_t(names.size()), path);
+    return tyn_volume_choose(job, grids.data(), uint32_t(grids.size()), path);
 }
 
 // Index to world, column-major; `lo` is where an index of 0 is to be.
@@ -263,17 +258,5 @@ tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
     std::free(job->list);
     job->list = nullptr;
     job->num_list = 0;
-    return r;
-}
-
-tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
-                        uint64_t *clamped_negative, const tyn_log *log)
-{
-    tyn_grid_job job = {};
-    job.grid = grid;
-    job.log = log;
-    const tyn_result r = tyn_vdb_read_file(&job, path);
-    *volume = job.volume;
-    *clamped_negative += job.clamped;
     return r;
 }

@@ -7,9 +7,6 @@ extern "C" {
 #endif
 
 tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path);
-// A density by itself.
-tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
-                        uint64_t *clamped_negative, const tyn_log *log);
 
 #ifdef __cplusplus
 }

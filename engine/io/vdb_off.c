@@ -9,11 +9,3 @@ tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
                   path);
     return TYN_ERR_UNSUPPORTED;
 }
-
-tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
-                        uint64_t *clamped_negative, const tyn_log *log)
-{
-    (void)volume, (void)clamped_negative;
-    tyn_grid_job job = {.grid = grid, .log = log};
-    return tyn_vdb_read_file(&job, path);
-}

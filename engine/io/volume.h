@@ -64,8 +64,12 @@ tyn_grid_role tyn_grid_role_of(const char *name);
 // is one of numbers or of vectors that can be read). Without: "density", else a name that means one, else the first
 // whose name means nothing else: a temperature or a velocity is never taken for a density. Returns its index, or -1 after
 // one line that lists the grids there are and says what would be right. `job->left_out` tells of the others.
-int tyn_volume_choose(tyn_grid_job *job, const char *const *names, const char *const *types,
-                      const bool *scalar, const bool *vector, uint32_t count, const char *file);
+typedef struct tyn_grid_entry {
+    const char *name, *type;
+    bool scalar, vector;
+} tyn_grid_entry;
+int tyn_volume_choose(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t count,
+                      const char *file);
 
 // Voxel sizes and the box in the world, from index_to_world and the box of indices.
 void tyn_volume_grid_place(tyn_volume_grid *grid);

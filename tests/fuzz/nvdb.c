@@ -5,10 +5,9 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    tyn_volume volume;
-    uint64_t clamped = 0;
-    if (tyn_nvdb_parse(&volume, data, size, NULL, "fuzz.nvdb", &clamped, NULL) == TYN_OK) {
-        tyn_volume_finish(&volume);
+    tyn_grid_job density = {0};
+    if (tyn_nvdb_read(&density, data, size, "fuzz.nvdb") == TYN_OK) {
+        tyn_volume_finish(&density.volume);
     }
     tyn_grid_job color = {.grid = "density", .use = TYN_GRID_COLOR};
     if (tyn_nvdb_read(&color, data, size, "fuzz.nvdb") == TYN_OK) {

@@ -12,8 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static uint8_t *valid[4], file[1 << 20];
     static size_t length[4], grid;
     size_t kind = size % 4;
-    tyn_volume volume;
-    uint64_t clamped = 0;
+    tyn_grid_job job = {0};
     nvdb_spec spec = {"density", types[kind], 0, 2, {1, 2, 3}, {9, 8, 7}, NULL, 0, {0}, 0, 1};
     valid[kind] = valid[kind] ? valid[kind] : nvdb_write(&spec, &length[kind], &grid);
     memcpy(file, valid[kind], length[kind]);
@@ -21,8 +20,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         size_t at = grid + places[data[0] % 8] + (data[1] | data[2] << 8 | (data[3] & 3) << 16);
         memcpy(file + at % (length[kind] - 4), data + 4, 4);
     }
-    if (!tyn_nvdb_parse(&volume, file, length[kind], NULL, "fuzz.nvdb", &clamped, NULL)) {
-        tyn_volume_finish(&volume);
+    if (!tyn_nvdb_read(&job, file, length[kind], "fuzz.nvdb")) {
+        tyn_volume_finish(&job.volume);
     }
     return 0;
 }

@@ -45,20 +45,18 @@ static void by_name(void **state)
         {{"temperature"}, "temp", TYN_GRID_VALUE, -1, "no grid \"temp\": there are", NULL},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const char *names[4] = {0}, *types[4] = {0};
-        bool scalar[4], vector[4];
+        tyn_grid_entry grids[4];
         uint32_t count = 0;
         for (; count < 4 && cases[i].names[count]; count++) {
             const char *name = cases[i].names[count];
-            vector[count] = strncmp(name, "v:", 2) == 0;
-            scalar[count] = !vector[count];
-            names[count] = name + (vector[count] ? 2 : 0);
-            types[count] = vector[count] ? "vec3f" : "float";
+            const bool vector = strncmp(name, "v:", 2) == 0;
+            grids[count] = (tyn_grid_entry){name + (vector ? 2 : 0), vector ? "vec3f" : "float",
+                                            !vector, vector};
         }
         io_log log;
         io_log_init(&log);
         tyn_grid_job job = {.grid = cases[i].asked, .use = cases[i].use, .log = &log.log};
-        const int chosen = tyn_volume_choose(&job, names, types, scalar, vector, count, "a.vdb");
+        const int chosen = tyn_volume_choose(&job, grids, count, "a.vdb");
         if (chosen != cases[i].chosen) {
             print_error("case %zu: %d, must be %d: %s\n", i, chosen, cases[i].chosen, log.last);
         }
