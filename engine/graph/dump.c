@@ -43,43 +43,15 @@ static const char *kind_name(resource_kind kind)
     return names[kind];
 }
 
-static const char *format_name(VkFormat format)
-{
-    switch (format) {
-    case VK_FORMAT_R16_SFLOAT:
-        return "R16F";
-    case VK_FORMAT_R32_SFLOAT:
-        return "R32F";
-    case VK_FORMAT_R32_UINT:
-        return "R32UI";
-    case VK_FORMAT_R32G32_SFLOAT:
-        return "RG32F";
-    case VK_FORMAT_R32G32_UINT:
-        return "RG32UI";
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-        return "RGBA16F";
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-        return "RGBA32F";
-    case VK_FORMAT_R32G32B32A32_UINT:
-        return "RGBA32UI";
-    case VK_FORMAT_R8G8B8A8_UNORM:
-        return "RGBA8";
-    case VK_FORMAT_D32_SFLOAT:
-        return "D32F";
-    default:
-        return "other";
-    }
-}
-
 static void print_shape(char *out, size_t size, const resource *r)
 {
     if (r->dim == TYN_BUFFER) {
         snprintf(out, size, "buffer %u B", r->extent.x);
     } else if (r->dim == TYN_IMAGE_2D) {
-        snprintf(out, size, "%s %u x %u", format_name(r->format), r->extent.x, r->extent.y);
+        snprintf(out, size, "%s %u x %u", graph_format_name(r->format), r->extent.x, r->extent.y);
     } else {
-        snprintf(out, size, "%s %u x %u x %u", format_name(r->format), r->extent.x, r->extent.y,
-                 r->extent.z);
+        snprintf(out, size, "%s %u x %u x %u", graph_format_name(r->format), r->extent.x,
+                 r->extent.y, r->extent.z);
     }
 }
 

@@ -1,29 +1,44 @@
 // formats.c -- what the graph knows of formats of texels.
 #include "graph/internal.h"
 
+// Those that passes may give their resources.
+static const struct {
+    VkFormat format;
+    uint32_t size; // of a texel, bytes
+    const char *name;
+} formats[] = {
+    {VK_FORMAT_R8_UNORM, 1, "other"},
+    {VK_FORMAT_R16_SFLOAT, 2, "R16F"},
+    {VK_FORMAT_R32_SFLOAT, 4, "R32F"},
+    {VK_FORMAT_R32_UINT, 4, "R32UI"},
+    {VK_FORMAT_R16G16_SFLOAT, 4, "other"},
+    {VK_FORMAT_R8G8B8A8_UNORM, 4, "RGBA8"},
+    {VK_FORMAT_D32_SFLOAT, 4, "D32F"},
+    {VK_FORMAT_R32G32_SFLOAT, 8, "RG32F"},
+    {VK_FORMAT_R32G32_UINT, 8, "RG32UI"},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, 8, "RGBA16F"},
+    {VK_FORMAT_R32G32B32A32_SFLOAT, 16, "RGBA32F"},
+    {VK_FORMAT_R32G32B32A32_UINT, 16, "RGBA32UI"},
+    {VK_FORMAT_UNDEFINED, 16, "other"}, // all else: the most that a texel takes
+};
+
+static uint32_t row_of(VkFormat format)
+{
+    uint32_t i = 0;
+    while (formats[i].format && formats[i].format != format) {
+        i++;
+    }
+    return i;
+}
+
 uint32_t graph_texel_size(VkFormat format)
 {
-    switch (format) {
-    case VK_FORMAT_R8_UNORM:
-        return 1;
-    case VK_FORMAT_R16_SFLOAT:
-        return 2;
-    case VK_FORMAT_R32_SFLOAT:
-    case VK_FORMAT_R32_UINT:
-    case VK_FORMAT_R16G16_SFLOAT:
-    case VK_FORMAT_R8G8B8A8_UNORM:
-    case VK_FORMAT_D32_SFLOAT:
-        return 4;
-    case VK_FORMAT_R32G32_SFLOAT:
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-        return 8;
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-    case VK_FORMAT_R32G32B32A32_UINT:
-        return 16;
-    default:
-        return 16;
-    }
+    return formats[row_of(format)].size;
+}
+
+const char *graph_format_name(VkFormat format)
+{
+    return formats[row_of(format)].name;
 }
 
 VkImageAspectFlags graph_aspect(VkFormat format)
@@ -48,18 +63,13 @@ const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS] = {
 
 int graph_texel_index(tyn_use use)
 {
-    switch (use) {
-    case TYN_USE_TEXELS_FLOAT:
-        return 0;
-    case TYN_USE_TEXELS_VEC4:
-        return 1;
-    case TYN_USE_TEXELS_UINT:
-        return 2;
-    case TYN_USE_TEXELS_UVEC4:
-        return 3;
-    default:
-        return -1;
+    static const tyn_use uses[NUM_TEXEL_FORMATS] = {TYN_USE_TEXELS_FLOAT, TYN_USE_TEXELS_VEC4,
+                                                    TYN_USE_TEXELS_UINT, TYN_USE_TEXELS_UVEC4};
+    int i = NUM_TEXEL_FORMATS - 1;
+    while (i >= 0 && uses[i] != use) {
+        i--;
     }
+    return i;
 }
 
 uint64_t graph_resource_bytes(const resource *r)

@@ -343,6 +343,7 @@ bool graph_overlap(const phys *a, const phys *b);
 void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
+const char *graph_format_name(VkFormat format);   // for dumps
 uint64_t graph_resource_bytes(const resource *r); // of its texels, without padding
 extern const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS];
 int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels
