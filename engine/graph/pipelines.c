@@ -87,20 +87,10 @@ tyn_result graph_postpone(tyn_graph *g, VkCommandBuffer cmd)
         if (r->kind != RESOURCE_IMPORT) {
             continue;
         }
-        const VkImageMemoryBarrier2 barrier = {
-            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-            .srcStageMask = image->before.stages,
-            .srcAccessMask = image->before.access,
-            .dstStageMask = image->after.stages,
-            .dstAccessMask = image->after.access,
-            .oldLayout = image->before.layout,
-            .newLayout = image->after.layout,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .image = image->image,
-            .subresourceRange = {image->aspect ? image->aspect : graph_aspect(r->format), 0, 1, 0,
-                                 1},
-        };
+        const VkImageMemoryBarrier2 barrier = graph_image_barrier(
+            r, image->image,
+            &(tyn_barrier){image->before.stages, image->after.stages, image->before.access,
+                           image->after.access, image->before.layout, image->after.layout});
         g->dev->vk.CmdPipelineBarrier2(
             cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                      .imageMemoryBarrierCount = 1,

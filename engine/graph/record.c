@@ -164,16 +164,11 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
 static void wait_for_all(tyn_graph *g, VkCommandBuffer cmd)
 {
     if (g->reused) {
-        g->dev->vk.CmdPipelineBarrier2(
-            cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                     .memoryBarrierCount = 1,
-                                     .pMemoryBarriers = &(VkMemoryBarrier2){
-                                         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                         .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                         .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                         .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT |
-                                                          VK_ACCESS_2_MEMORY_WRITE_BIT}});
+        graph_memory_barrier(
+            g, cmd,
+            &(tyn_barrier){VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                           VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
         g->reused = false;
     }
 }
@@ -444,17 +439,12 @@ static void record_readbacks(tyn_recorder *rec)
         any = true;
     }
     if (any) {
-        g->dev->vk.CmdPipelineBarrier2(
-            rec->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                          .memoryBarrierCount = 1,
-                                          .pMemoryBarriers = &(VkMemoryBarrier2){
-                                              .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                              .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                              .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                              .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT |
-                                                              VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                              .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT |
-                                                               VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+        graph_memory_barrier(
+            g, rec->cmd,
+            &(tyn_barrier){VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                           VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                           VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                           VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT});
     }
 }
 

@@ -68,6 +68,40 @@ void recorder_fail(tyn_recorder *r, tyn_result result, const char *what, const c
 
 // ---- barriers ---------------------------------------------------------------------------------
 
+VkImageMemoryBarrier2 graph_image_barrier(const resource *r, VkImage image, const tyn_barrier *b)
+{
+    const bool lent = r->kind == RESOURCE_IMPORT;
+    const VkImageAspectFlags aspect =
+        lent && r->image.aspect ? r->image.aspect : graph_aspect(r->format);
+    return (VkImageMemoryBarrier2){
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .srcStageMask = b->src_stages,
+        .srcAccessMask = b->src_access,
+        .dstStageMask = b->dst_stages,
+        .dstAccessMask = b->dst_access,
+        .oldLayout = b->old_layout,
+        .newLayout = b->new_layout,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image,
+        // Of a host's image only mip 0 of layer 0 is ours.
+        .subresourceRange = {aspect, 0, lent ? 1 : VK_REMAINING_MIP_LEVELS, 0, 1},
+    };
+}
+
+void graph_memory_barrier(const tyn_graph *g, VkCommandBuffer cmd, const tyn_barrier *b)
+{
+    g->dev->vk.CmdPipelineBarrier2(
+        cmd, &(VkDependencyInfo){
+                 .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                 .memoryBarrierCount = 1,
+                 .pMemoryBarriers = &(VkMemoryBarrier2){.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                                        .srcStageMask = b->src_stages,
+                                                        .srcAccessMask = b->src_access,
+                                                        .dstStageMask = b->dst_stages,
+                                                        .dstAccessMask = b->dst_access}});
+}
+
 typedef struct barrier_batch {
     VkBufferMemoryBarrier2 buffers[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
     VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
@@ -91,24 +125,7 @@ static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, cons
         };
         return;
     }
-    const resource *r = &g->resources[index];
-    VkImageAspectFlags aspect =
-        r->kind == RESOURCE_IMPORT && r->image.aspect ? r->image.aspect : graph_aspect(r->format);
-    batch->images[batch->num_images++] = (VkImageMemoryBarrier2){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .srcStageMask = b->src_stages,
-        .srcAccessMask = b->src_access,
-        .dstStageMask = b->dst_stages,
-        .dstAccessMask = b->dst_access,
-        .oldLayout = b->old_layout,
-        .newLayout = b->new_layout,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = p->image,
-        // Of a host's image only mip 0 of layer 0 is ours.
-        .subresourceRange = {aspect, 0, r->kind == RESOURCE_IMPORT ? 1 : VK_REMAINING_MIP_LEVELS, 0,
-                             1},
-    };
+    batch->images[batch->num_images++] = graph_image_barrier(&g->resources[index], p->image, b);
 }
 
 static void print_barrier(tyn_recorder *r, uint32_t index, const tyn_barrier *b)
@@ -171,16 +188,10 @@ static void put_memory_barrier(tyn_recorder *r, VkPipelineStageFlags2 stages, Vk
         r->print(r->print_user, line);
         return;
     }
-    r->g->dev->vk.CmdPipelineBarrier2(
-        r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                    .memoryBarrierCount = 1,
-                                    .pMemoryBarriers = &(VkMemoryBarrier2){
-                                        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                        .srcStageMask = stages,
-                                        .srcAccessMask = access,
-                                        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT |
-                                                         VK_ACCESS_2_MEMORY_WRITE_BIT}});
+    graph_memory_barrier(
+        r->g, r->cmd,
+        &(tyn_barrier){stages, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, access,
+                       VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
 }
 
 void recorder_enter(tyn_recorder *r)
