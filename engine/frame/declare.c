@@ -13,18 +13,10 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     }
     ctx->outputs = job.outputs;
     tyn_graph_begin(ctx->graph);
-    if (frame->recompute) {
-        tyn_graph_recompute(ctx->graph);
-    }
-    if (frame->background) {
-        tyn_graph_background(ctx->graph);
-    }
-    if (frame->idle) {
-        tyn_graph_idle(ctx->graph);
-    }
-    if (frame->setup_only) {
-        tyn_graph_setup_only(ctx->graph);
-    }
+    *tyn_graph_mode(ctx->graph) = (tyn_record_mode){.recompute = frame->recompute,
+                                                    .setup_only = frame->setup_only,
+                                                    .background = frame->background,
+                                                    .idle = frame->idle};
     tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     tyn_frame_upload(ctx, frame, &job.refs);
     for (uint32_t i = 0; i < job.num_hooks; i++) {

@@ -11,7 +11,7 @@ static tyn_result declare(tyn_graph *g, const tyn_pass_desc *pass, const void *p
 {
     tyn_ref refs[TYN_MAX_PORTS] = {0};
     tyn_graph_begin(g);
-    tyn_graph_recompute(g);
+    tyn_graph_mode(g)->recompute = true;
     tyn_result result = tyn_graph_add(g, pass, params, refs);
     for (uint32_t i = 0; i < pass->num_ports && result == TYN_OK; i++) {
         if (pass->ports[i].dir == TYN_OUT && refs[i].resource) {

@@ -48,9 +48,8 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
     if (result == TYN_OK) {
         result = tyn_frame_check_content(ctx, frame);
     }
-    if (result == TYN_OK && ctx->sizes == tyn_frame_sizes(ctx, frame)) {
-        tyn_graph_yield(ctx->graph);
-    }
+    tyn_graph_mode(ctx->graph)->yields =
+        result == TYN_OK && ctx->sizes == tyn_frame_sizes(ctx, frame);
     return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
 }
 

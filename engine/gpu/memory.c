@@ -148,7 +148,8 @@ tyn_result tyn_heap_place(const tyn_device *dev, tyn_heap *heap, const VkMemoryR
             return TYN_OK;
         }
     }
-    const VkDeviceSize likely = expected < MIN_BLOCK   ? MIN_BLOCK
+    const VkDeviceSize likely = !expected              ? 0
+                                : expected < MIN_BLOCK ? MIN_BLOCK
                                 : expected > MAX_BLOCK ? MAX_BLOCK
                                                        : expected;
     *out = (tyn_place){heap->num_blocks, 0};

@@ -29,7 +29,7 @@ typedef enum tyn_memory_kind {
     TYN_MEMORY_READBACK, // host-visible and coherent, cached where there is such a type
 } tyn_memory_kind;
 
-// `expected` is what will still be asked for of this kind: the next block is made that large.
+// `expected` is what will still be asked for of this kind, this with it: a new block is made that large; 0: this alone.
 tyn_result tyn_heap_place(const tyn_device *dev, tyn_heap *heap, const VkMemoryRequirements *need,
                           tyn_memory_kind kind, VkDeviceSize expected, tyn_place *out);
 // A block that the caller lays out.

@@ -245,47 +245,6 @@ tyn_result graph_draft_resources(tyn_graph *g)
     return result;
 }
 
-// By tyn_dim, and DUMMY_WORDS: zeros that are bound where an optional input is absent.
-static resource dummy_resource(int d)
-{
-    const bool buffer = d == TYN_BUFFER, words = d == DUMMY_WORDS;
-    return (resource){.name = "none",
-                      .kind = RESOURCE_OUT,
-                      .dim = words ? TYN_IMAGE_2D : (tyn_dim)d,
-                      .format = buffer  ? VK_FORMAT_UNDEFINED
-                                : words ? VK_FORMAT_R32G32_UINT
-                                        : VK_FORMAT_R32G32B32A32_SFLOAT,
-                      .extent = {buffer ? DUMMY_BYTES : 1, 1, 1},
-                      .mips = 1};
-}
-
-// Made once.
-tyn_result graph_draft_dummies(tyn_graph *g)
-{
-    tyn_result result = TYN_OK;
-    const bool there = g->dummy_heap.num_blocks > 0;
-    for (int d = 0; result == TYN_OK && !there && d < NUM_DUMMIES; d++) {
-        const resource r = dummy_resource(d);
-        phys *p = &g->dummy[d];
-        *p = (phys){.made = g->frame,
-                    .bytes = d == TYN_BUFFER ? DUMMY_BYTES : 0,
-                    .buffer_usage =
-                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                    .texel_uses = d == TYN_BUFFER ? (1u << NUM_TEXEL_FORMATS) - 1 : 0,
-                    .image_usage = (d == DUMMY_WORDS ? VK_IMAGE_USAGE_STORAGE_BIT
-                                                     : VK_IMAGE_USAGE_SAMPLED_BIT) |
-                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-        result = make_object(g, &r, p);
-        if (result == TYN_OK) {
-            const VkMemoryRequirements need = graph_requirements(g, p);
-            result = tyn_heap_place(g->dev, &g->dummy_heap, &need, TYN_MEMORY_DEVICE, 0, &p->place);
-        }
-        g->dummy_ready = false;
-    }
-    return result;
-}
-
 // Of an object without memory. Places that are shared have been bound.
 static tyn_result bind_object(tyn_graph *g, const tyn_heap *heap, const resource *r, phys *p)
 {
@@ -307,11 +266,6 @@ tyn_result graph_bind_objects(tyn_graph *g)
         result = p->kept || p->borrowed ? TYN_OK : bind_object(g, heap_of(g, r, p), r, p);
         result = result == TYN_OK ? bind_host_buffer(g, &g->heap, &p->readback) : result;
         result = result == TYN_OK ? bind_host_buffer(g, &g->staging_heap, &p->staging) : result;
-    }
-    for (int d = 0; result == TYN_OK && d < NUM_DUMMIES; d++) {
-        const resource r = dummy_resource(d);
-        const bool bound = g->dummy[d].view || g->dummy[d].texels[0];
-        result = bound ? TYN_OK : bind_object(g, &g->dummy_heap, &r, &g->dummy[d]);
     }
     return result;
 }

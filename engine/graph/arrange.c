@@ -11,9 +11,8 @@ static bool reserve(tyn_graph *g)
 {
     aged_heap *grown = realloc(g->aged, (g->num_aged + 1) * sizeof *grown);
     g->aged = grown ? grown : g->aged;
-    return grown &&
-           graph_retire_reserve(g, (g->num_phys + g->num_resources + NUM_DUMMIES) * PHYS_PARTS +
-                                       2 * MAX_SLOTS + g->num_aged + g->num_blocks + 4);
+    return grown && graph_retire_reserve(g, (g->num_phys + g->num_resources) * PHYS_PARTS +
+                                                2 * MAX_SLOTS + g->num_aged + g->num_blocks + 4);
 }
 
 static void *copy_array(const void *from, size_t count, size_t size)
@@ -53,8 +52,16 @@ static bool begin(tyn_graph *g, draft *d)
     return true;
 }
 
-static void mark_transfers(tyn_graph *g)
+static void mark_uses(tyn_graph *g)
 {
+    for (uint32_t i = 0; i < NUM_ZEROS; i++) { // all that any kernel makes, so that they are kept
+        g->phys[i].image_usage =
+            i == ZERO_WORDS ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
+        g->phys[i].buffer_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                  VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+        g->phys[i].texel_uses = i == TYN_BUFFER ? (1u << NUM_TEXEL_FORMATS) - 1 : 0;
+    }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
         if (g->outputs[i].readback) {
             phys *p = &g->phys[g->outputs[i].ref.resource - 1];
@@ -74,7 +81,7 @@ static void mark_transfers(tyn_graph *g)
 static tyn_result draft_all(tyn_graph *g, draft *d)
 {
     const bool anew = d->how == ARRANGE_ANEW;
-    mark_transfers(g);
+    mark_uses(g);
     tyn_result result = graph_survey(g, &d->survey, g->phys);
     if (result != TYN_OK) {
         return result;
@@ -83,8 +90,7 @@ static tyn_result draft_all(tyn_graph *g, draft *d)
     result = graph_keep_places(g, &d->old);
     result = result == TYN_OK ? graph_draft_resources(g) : result;
     result = result == TYN_OK ? graph_draft_shared(g, anew) : result;
-    result = result == TYN_OK ? graph_draft_readbacks(g) : result;
-    return result == TYN_OK ? graph_draft_dummies(g) : result;
+    return result == TYN_OK ? graph_draft_readbacks(g) : result;
 }
 
 tyn_result graph_draft(tyn_graph *g, arrangement how, draft *d)
@@ -132,12 +138,6 @@ static void destroy_draft(tyn_graph *g, const draft *d)
             tyn_heap_finish(g->dev, &g->blocks[b].heap);
         }
     }
-    for (int i = 0; i < NUM_DUMMIES && !d->before.dummy_heap.num_blocks; i++) {
-        graph_destroy_phys(g, &g->dummy[i]);
-    }
-    if (!d->before.dummy_heap.num_blocks) {
-        tyn_heap_finish(g->dev, &g->dummy_heap);
-    }
     if (!uploads) {
         tyn_heap_finish(g->dev, &g->heap);
     }
@@ -158,8 +158,7 @@ void graph_undo(tyn_graph *g, draft *d)
 VkDeviceSize graph_draft_bytes(const tyn_graph *g, const draft *d)
 {
     const tyn_graph *before = &d->before;
-    VkDeviceSize bytes =
-        graph_retired_bytes(g) + g->heap.total + g->dummy_heap.total + g->staging_heap.total;
+    VkDeviceSize bytes = graph_retired_bytes(g) + g->heap.total + g->staging_heap.total;
     for (uint32_t i = 0; i < g->num_phys; i++) {
         bytes += g->phys[i].heap.total;
     }
@@ -217,7 +216,6 @@ tyn_result graph_commit(tyn_graph *g, draft *d)
     for (uint32_t b = 0; result == TYN_OK && b < g->num_blocks; b++) {
         result = tyn_heap_allocate(g->dev, &g->blocks[b].heap);
     }
-    result = result == TYN_OK ? tyn_heap_allocate(g->dev, &g->dummy_heap) : result;
     result = result == TYN_OK ? tyn_heap_allocate(g->dev, &g->staging_heap) : result;
     result = result == TYN_OK ? graph_bind_shared(g) : result;
     return result == TYN_OK ? graph_bind_objects(g) : result;

@@ -31,11 +31,6 @@ void graph_finish(tyn_graph *g)
     graph_retire_heap(g, &g->heap, g->heap_made);
     graph_retire_aged(g, true);
     graph_retire_blocks(g, true);
-    const uint64_t made = g->dummy[TYN_BUFFER].made;
-    for (int d = 0; d < NUM_DUMMIES; d++) {
-        graph_destroy_phys(g, &g->dummy[d]);
-    }
-    graph_retire_heap(g, &g->dummy_heap, made);
     for (uint32_t i = 0; i < g->num_slots; i++) {
         graph_destroy_slot(g, &g->slots[i]);
     }
@@ -124,7 +119,7 @@ static tyn_result say_what_waits(const tyn_graph *g, tyn_result result)
 
 void tyn_graph_forget(tyn_graph *g)
 {
-    g->idle = true; // nothing of what goes waits for frames
+    g->mode.idle = true; // nothing of what goes waits for frames
     graph_finish(g);
     graph_retire_over(g);
 }

@@ -31,43 +31,6 @@ tyn_result tyn_graph_status(const tyn_graph *g)
     return g->status;
 }
 
-void tyn_graph_begin(tyn_graph *g)
-{
-    g->status = TYN_OK;
-    g->num_resources = 0;
-    g->num_nodes = 0;
-    g->num_outputs = 0;
-    g->inspect = NULL;
-    g->params_used = 0;
-    g->recompute = g->setup_only = g->background = g->yields = g->idle = false;
-    g->current = false;
-}
-
-void tyn_graph_recompute(tyn_graph *g)
-{
-    g->recompute = true;
-}
-
-void tyn_graph_setup_only(tyn_graph *g)
-{
-    g->setup_only = true;
-}
-
-void tyn_graph_yield(tyn_graph *g)
-{
-    g->yields = true;
-}
-
-void tyn_graph_idle(tyn_graph *g)
-{
-    g->idle = true;
-}
-
-void tyn_graph_background(tyn_graph *g)
-{
-    g->background = true;
-}
-
 static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)
 {
     if (count < *cap) {
@@ -91,6 +54,30 @@ static tyn_ref add_resource(tyn_graph *g, const resource *r)
     g->resources = grown;
     g->resources[g->num_resources++] = *r;
     return (tyn_ref){g->num_resources, 0};
+}
+
+void tyn_graph_begin(tyn_graph *g)
+{
+    static const VkFormat formats[NUM_ZEROS] = {[TYN_IMAGE_2D] = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                [TYN_IMAGE_3D] = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                [ZERO_WORDS] = VK_FORMAT_R32G32_UINT};
+    g->status = TYN_OK;
+    g->num_resources = 0;
+    g->num_nodes = 0;
+    g->num_outputs = 0;
+    g->inspect = NULL;
+    g->params_used = 0;
+    g->mode = (tyn_record_mode){0};
+    g->current = false;
+    for (int i = 0; i < NUM_ZEROS; i++) {
+        tyn_graph_history_image(g, "none", i == ZERO_WORDS ? TYN_IMAGE_2D : (tyn_dim)i, formats[i],
+                                (tyn_extent){i == TYN_BUFFER ? ZERO_BYTES : 1, 1, 1}, 0);
+    }
+}
+
+tyn_record_mode *tyn_graph_mode(tyn_graph *g)
+{
+    return &g->mode;
 }
 
 static resource *find(tyn_graph *g, tyn_ref ref)

@@ -113,12 +113,12 @@ static char *dump_text(tyn_graph *g, const tyn_pass_desc *const *passes)
         return NULL;
     }
     put(&t, "graph: %u nodes, %u resources, persistent %.2f MiB, transient %.2f MiB\n",
-        g->num_nodes, g->num_resources, (double)g->persistent_bytes / (1 << 20),
+        g->num_nodes, g->num_resources - NUM_ZEROS, (double)g->persistent_bytes / (1 << 20),
         (double)g->transient_bytes / (1 << 20));
     for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         bool outside = r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_IMPORT;
-        if (r->kind == RESOURCE_UPLOAD) {
+        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY) {
             tracks[i] =
                 (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                             .write_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -199,7 +199,7 @@ static char *dump_dot(tyn_graph *g, const tyn_pass_desc *const *passes)
             }
         }
     }
-    for (uint32_t i = 0; i < g->num_resources; i++) {
+    for (uint32_t i = NUM_ZEROS; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         char shape[96];
         if (r->kind != RESOURCE_SCRATCH) {

@@ -27,24 +27,22 @@ void tyn_graph_begin(tyn_graph *g);
 tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, const tyn_image *image,
                                uint64_t version);
 
-// This frame runs every node that depends on more than the media, changed or not (for timing).
-void tyn_graph_recompute(tyn_graph *g);
-
-// This frame records only uploads and nodes that depend on the media alone.
-void tyn_graph_setup_only(tyn_graph *g);
-
-// Pipelines of this declaration are compiled beside tyn_graph_compile and tyn_graph_record, which return TYN_PENDING
-// until they are there: compile keeps what was compiled before, and record only takes host images to their `after`.
-void tyn_graph_background(tyn_graph *g);
-
-// A record of this declaration that was not compiled takes host images to their `after` and gives TYN_PENDING, instead of refusing.
-void tyn_graph_yield(tyn_graph *g);
+// How a declaration is compiled and recorded: nothing of this until it is set, after tyn_graph_begin.
+typedef struct tyn_record_mode {
+    bool
+        recompute; // every node that depends on more than the media runs, changed or not (for timing)
+    bool setup_only; // only uploads and nodes that depend on the media alone
+    // Pipelines are compiled beside tyn_graph_compile and tyn_graph_record, which return TYN_PENDING until they are there:
+    // compile keeps what was compiled before, and record only takes host images to their `after`.
+    bool background;
+    bool yields; // a record of what was not compiled does likewise, instead of refusing
+    bool
+        idle; // the GPU is done with all earlier records: what is replaced is destroyed before others are allocated
+} tyn_record_mode;
+tyn_record_mode *tyn_graph_mode(tyn_graph *g);
 
 // What was recorded was not executed: all is made anew. The GPU must be done with earlier records.
 void tyn_graph_forget(tyn_graph *g);
-
-// The GPU is done with all earlier records: what tyn_graph_compile replaces is destroyed before it allocates.
-void tyn_graph_idle(tyn_graph *g);
 
 // Has what a node of this pass makes, the image at its debug port, read back as the output "inspect";
 // of several such nodes the last. Counts until the next tyn_graph_begin.

@@ -11,11 +11,9 @@
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
 enum { NUM_TEXEL_FORMATS = 4 };
-enum {
-    DUMMY_BYTES = 256,
-    DUMMY_WORDS = TYN_IMAGE_3D + 1,
-    NUM_DUMMIES
-}; // of two words a texel: what is stored packed
+// The first resources of every declaration, by tyn_dim: histories that nobody writes, bound where an optional input is
+// absent. ZERO_WORDS has two words a texel, for what is stored packed.
+enum { ZERO_BYTES = 256, ZERO_WORDS = TYN_IMAGE_3D + 1, NUM_ZEROS };
 
 typedef enum resource_kind {
     RESOURCE_OUT = 0, // made by a node, kept between frames
@@ -187,7 +185,7 @@ struct tyn_graph {
     uint32_t num_outputs;
     const char *inspect; // pass whose debug port is wanted; NULL = none
     uint64_t unique;     // ever-changing content
-    bool recompute, setup_only, background, yields;
+    tyn_record_mode mode;
     bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled
@@ -197,9 +195,7 @@ struct tyn_graph {
     uint32_t num_phys;
     node_run *runs;
     uint32_t num_runs;
-    phys dummy[NUM_DUMMIES]; // by tyn_dim: bound where an optional input is absent
-    bool dummy_ready;
-    tyn_heap heap, staging_heap, dummy_heap;
+    tyn_heap heap, staging_heap;
     uint64_t age;                     // of `heap`: compilations so far
     uint64_t heap_made, staging_made; // graph.frame when things were put there
     aged_heap *aged;
@@ -214,7 +210,6 @@ struct tyn_graph {
     uint32_t num_timed;  // nodes that they have timestamps for
     uint64_t frame;      // records so far
     retire_list retired; // what they may still use
-    bool idle;           // they are over: the host says so
     launch_sets sets;    // of the current record
     tyn_node_stats *stats;
     pipeline_list wanted; // that are being compiled in the background
@@ -289,7 +284,6 @@ bool graph_fits_budget(const tyn_graph *g, const draft *d);
 // allocate.c: objects of a draft, with their places in heaps.
 tyn_result graph_draft_resources(tyn_graph *g);
 tyn_result graph_draft_readbacks(tyn_graph *g);
-tyn_result graph_draft_dummies(tyn_graph *g); // stand-ins for optional inputs
 tyn_result graph_draft_staging(tyn_graph *g); // uploads in host memory
 tyn_result graph_bind_objects(tyn_graph *g);  // once there is memory; and their views
 void graph_fill_staging(tyn_graph *g);

@@ -60,7 +60,7 @@ tyn_result graph_make_pipelines(tyn_graph *g)
     let_go(&before);
     for (uint32_t i = 0; result == TYN_OK && i < g->wanted.count; i++) {
         tyn_variant *v = g->wanted.items[i];
-        const tyn_result made = g->background ? tyn_variant_request(v) : tyn_variant_make(v);
+        const tyn_result made = g->mode.background ? tyn_variant_request(v) : tyn_variant_make(v);
         result = made == TYN_PENDING ? TYN_OK : made;
     }
     if (result == TYN_OK && tyn_graph_pending(g)) {
@@ -77,7 +77,7 @@ uint32_t tyn_graph_pending(const tyn_graph *g)
 
 tyn_result graph_postpone(tyn_graph *g, VkCommandBuffer cmd)
 {
-    tyn_result result = g->background ? graph_make_pipelines(g) : TYN_OK;
+    tyn_result result = g->mode.background ? graph_make_pipelines(g) : TYN_OK;
     if (result < 0) {
         return result;
     }

@@ -25,7 +25,7 @@ void tyn_graph_destroy(tyn_graph **graph)
         return;
     }
     graph_forget_pipelines(g);
-    g->idle = true;
+    g->mode.idle = true;
     graph_finish(g);
     graph_retire_finish(g);
     free(g->resources);
@@ -104,60 +104,6 @@ static void record_zeros(tyn_recorder *rec, uint32_t index)
     p->key = r->key;
     p->content = 1; // zeros
     p->started = true;
-}
-
-static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
-{
-    if (g->dummy_ready) {
-        return;
-    }
-    const VkPipelineStageFlags2 shaders =
-        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-        (g->dev->graphics
-             ? VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
-             : 0);
-    enum { IMAGES = NUM_DUMMIES - TYN_IMAGE_2D };
-    VkImageMemoryBarrier2 images[IMAGES];
-    for (int d = 0; d < IMAGES; d++) {
-        images[d] = (VkImageMemoryBarrier2){
-            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-            .dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-            .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-            .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-            .image = g->dummy[TYN_IMAGE_2D + d].image,
-            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
-        };
-    }
-    VkDependencyInfo barrier = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                .imageMemoryBarrierCount = IMAGES,
-                                .pImageMemoryBarriers = images};
-    g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
-    g->dev->vk.CmdFillBuffer(cmd, g->dummy[TYN_BUFFER].buffer, 0, VK_WHOLE_SIZE, 0);
-    for (int d = 0; d < IMAGES; d++) {
-        const bool words = d == DUMMY_WORDS - TYN_IMAGE_2D;
-        g->dev->vk.CmdClearColorImage(cmd, images[d].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                      &(VkClearColorValue){{0}}, 1, &images[d].subresourceRange);
-        images[d].srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-        images[d].srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        images[d].dstStageMask = shaders;
-        images[d].dstAccessMask =
-            words ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-        images[d].oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        images[d].newLayout =
-            words ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    }
-    barrier.bufferMemoryBarrierCount = 1;
-    barrier.pBufferMemoryBarriers = &(VkBufferMemoryBarrier2){
-        .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-        .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-        .dstStageMask = shaders,
-        .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
-                         VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-        .buffer = g->dummy[TYN_BUFFER].buffer,
-        .size = VK_WHOLE_SIZE};
-    g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
-    g->dummy_ready = true;
 }
 
 // After a compilation that gave memory of what is gone to others, of which no track is left.
@@ -287,7 +233,7 @@ static bool add_overwritten(const tyn_graph *g, bool *run_node)
         const resource *r = &g->resources[i];
         const uint32_t maker = r->kind == RESOURCE_OUT ? r->writers[0] : 0;
         const node *n = maker ? &g->nodes[maker - 1] : NULL;
-        const bool can = n && n->needed && (n->media_only || !g->setup_only);
+        const bool can = n && n->needed && (n->media_only || !g->mode.setup_only);
         more |= can && !run_node[maker - 1] && is_overwritten(g, run_node, i) &&
                 also_run(run_node, maker);
     }
@@ -300,9 +246,9 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
-        bool wanted = n->needed && (n->media_only || !g->setup_only);
-        run_node[i] = wanted && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
-                                 !outputs_current(g, n, i));
+        bool wanted = n->needed && (n->media_only || !g->mode.setup_only);
+        run_node[i] = wanted && ((g->mode.recompute && !n->media_only) ||
+                                 g->runs[i].hash != n->hash || !outputs_current(g, n, i));
     }
     while (add_in_place(g, run_node) || add_overwritten(g, run_node)) {
     }
@@ -495,7 +441,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
         return g->status;
     }
     if (!tyn_graph_matches(g)) {
-        if (g->background || g->yields) {
+        if (g->mode.background || g->mode.yields) {
             return graph_postpone(g, cmd);
         }
         tyn_log_print(&g->dev->log, TYN_LOG_ERROR,
@@ -517,7 +463,6 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
 
     tyn_recorder rec = {.g = g, .mode = RECORD_LIVE, .cmd = cmd};
     wait_for_all(g, cmd);
-    record_dummies(g, cmd);
     record_sources(&rec);
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         slot->timed[i] = run_node[i];
@@ -530,7 +475,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
             g->runs[i].held = g->nodes[i].held ? g->nodes[i].held : g->runs[i].held;
         }
     }
-    if (!g->setup_only) {
+    if (!g->mode.setup_only) {
         record_readbacks(&rec);
     }
     record_imports_after(&rec);

@@ -16,6 +16,14 @@ static resource *resource_at(const tyn_recorder *r, uint8_t port)
     return res ? &r->g->resources[res - 1] : NULL;
 }
 
+// The resource that is bound at a port.
+static uint32_t bound(const tyn_recorder *r, uint8_t port)
+{
+    const tyn_port *p = &node_of(r)->pass->ports[port];
+    const uint32_t res = node_of(r)->res[port];
+    return res ? res - 1 : p->format == VK_FORMAT_R32G32_UINT ? ZERO_WORDS : (uint32_t)p->dim;
+}
+
 bool tyn_rec_has(const tyn_recorder *r, uint8_t port)
 {
     return resource_at(r, port) != NULL;
@@ -276,11 +284,7 @@ static const uint32_t no_spec[TYN_MAX_SPEC]; // zeros
 
 static const phys *physical(const tyn_recorder *r, uint8_t port)
 {
-    uint32_t res = node_of(r)->res[port];
-    const tyn_port *p = &node_of(r)->pass->ports[port];
-    return res                                  ? &r->g->phys[res - 1]
-           : p->format == VK_FORMAT_R32G32_UINT ? &r->g->dummy[DUMMY_WORDS]
-                                                : &r->g->dummy[p->dim];
+    return &r->g->phys[bound(r, port)];
 }
 
 static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, bool sampled)
@@ -332,14 +336,11 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
             writes[i].pBufferInfo = &buffers[i];
             h = tyn_hash_u64(h, (uint64_t)buffers[i].buffer);
         } else {
-            // The layout that this dispatch has the image in (two bindings may share it).
-            VkImageLayout layout = use == TYN_USE_SAMPLED ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                                                          : VK_IMAGE_LAYOUT_GENERAL;
-            for (uint32_t t = 0; t < l->num_touches; t++) {
-                if (l->touches[t].resource + 1 == node_of(r)->res[ports[i]]) {
-                    layout = l->touches[t].access.layout;
-                }
+            uint32_t t = 0; // two bindings may share the image, and its layout
+            while (l->touches[t].resource != bound(r, ports[i])) {
+                t++;
             }
+            const VkImageLayout layout = l->touches[t].access.layout;
             uint8_t mip = l->mips ? l->mips[i] : 0;
             images[i] = (VkDescriptorImageInfo){
                 use == TYN_USE_SAMPLED ? sampler_of(r, ports[i], &k->bindings[i]) : VK_NULL_HANDLE,
@@ -433,8 +434,8 @@ static void survey_launch(tyn_recorder *r, const launch *l)
         s->texel_buffers += texels >= 0;
         s->storage_buffers += buffer && use != TYN_USE_UNIFORM && texels < 0;
         s->storage_images += !buffer && use != TYN_USE_SAMPLED;
-        if (r->usage && n->res[ports[i]]) {
-            phys *p = &r->usage[n->res[ports[i]] - 1];
+        if (r->usage) {
+            phys *p = &r->usage[bound(r, ports[i])];
             p->image_usage |=
                 use == TYN_USE_SAMPLED ? VK_IMAGE_USAGE_SAMPLED_BIT : VK_IMAGE_USAGE_STORAGE_BIT;
             p->buffer_usage |= texels >= 0              ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
@@ -487,10 +488,8 @@ launch launch_begin(tyn_recorder *r, uint32_t kernel, const uint8_t *ports, cons
     launch l = {.kernel = kernel, .spec = spec, .mips = mips};
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         l.ports[i] = ports ? ports[i] : k->bindings[i].port;
-        if (n->res[l.ports[i]]) {
-            launch_touch(&l, n->res[l.ports[i]] - 1,
-                         access_of(&n->pass->ports[l.ports[i]], k->bindings[i].use, stages));
-        }
+        launch_touch(&l, bound(r, l.ports[i]),
+                     access_of(&n->pass->ports[l.ports[i]], k->bindings[i].use, stages));
     }
     return l;
 }

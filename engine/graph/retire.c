@@ -59,7 +59,7 @@ static void destroy(const tyn_graph *g, retired *r)
 // Is the GPU done with frames before `frame`, when the one with number g->frame is prepared or recorded?
 static bool is_over(const tyn_graph *g, uint64_t frame)
 {
-    return g->idle || !frame || frame + g->num_slots <= g->frame + 1;
+    return g->mode.idle || !frame || frame + g->num_slots <= g->frame + 1;
 }
 
 bool graph_waits(const tyn_graph *g, uint64_t made)

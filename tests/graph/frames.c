@@ -340,7 +340,7 @@ static void only_what_changed_runs(void **state)
     assert_states(f, "rrc");
 
     declare_chain(f->g, &c);
-    tyn_graph_recompute(f->g);
+    tyn_graph_mode(f->g)->recompute = true;
     frame(f);
     assert_states(f, "rrc");
 }
@@ -385,9 +385,9 @@ static void media_are_set_up_apart(void **state)
                          add_blur(f->g, refs[BLUR_OUT], (tyn_ref){0}, (node_params){1, 0, 0}),
                          true);
         if (i == 0) {
-            tyn_graph_setup_only(f->g);
+            tyn_graph_mode(f->g)->setup_only = true;
         } else if (i == 2) {
-            tyn_graph_recompute(f->g);
+            tyn_graph_mode(f->g)->recompute = true;
         }
         assert_int_equal(frame(f), TYN_OK);
         assert_states(f, i == 0 ? "ru" : "ur");
@@ -473,7 +473,7 @@ static void replaced_outlives_its_frames(void **state)
         }
         declare_drawing(f->g, (node_params){0});
         if (idle) {
-            tyn_graph_idle(f->g);
+            tyn_graph_mode(f->g)->idle = true;
         }
         live[0] = f->fake->live;
         assert_int_equal(tyn_graph_compile(f->g), TYN_OK);
