@@ -1,5 +1,6 @@
 // build.c -- what a frame makes of its scene: tables where something has changed, and the job.
 #include "frame/context.h"
+#include "base/fault.h"
 #include <tyndall/extend/hash.h>
 #include "frame/env_cdf.h"
 #include "gpu/device.h"
@@ -104,37 +105,22 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     const tyn_log *log = &ctx->dev->log;
     ctx->scene = frame->scene;
     tyn_frame_projection projection;
-    tyn_result result = tyn_frame_projection_find(&projection, frame, log);
-    if (result == TYN_OK) {
-        result = update_environment(ctx, &frame->scene->environment);
+    TYN_TRY(tyn_frame_projection_find(&projection, frame, log));
+    TYN_TRY(update_environment(ctx, &frame->scene->environment));
+    TYN_TRY(tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log));
+    if (ctx->method->info.traces_rays) {
+        TYN_TRY(tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
+                                        view->outputs & TYN_OUTPUT_BALANCE));
     }
-    if (result == TYN_OK) {
-        result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
-    }
-    if (result == TYN_OK && ctx->method->info.traces_rays) {
-        result = tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
-                                         view->outputs & TYN_OUTPUT_BALANCE);
-    }
-    if (result == TYN_OK) {
-        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &projection,
-                                       &ctx->map_light, &ctx->surfaces, log);
-    }
-    if (result == TYN_OK) {
-        result = tyn_frame_phases(ctx, frame->scene);
-    }
-    if (result == TYN_OK) {
-        result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
-        tyn_colors_plan(&ctx->colors, frame->scene);
-        choose_storage(ctx);
-    }
-    if (result == TYN_OK) {
-        look_at_grid(ctx, frame->scene);
-    }
-    if (result == TYN_OK && (view->outputs & TYN_OUTPUT_PROBE)) {
-        result = update_points(ctx, view);
-    }
-    if (result != TYN_OK) {
-        return result;
+    TYN_TRY(tyn_frame_scene_build(&ctx->frame, frame->scene, view, &projection, &ctx->map_light,
+                                  &ctx->surfaces, log));
+    TYN_TRY(tyn_frame_phases(ctx, frame->scene));
+    TYN_TRY(tyn_atlas_plan(&ctx->atlas, frame->scene, log));
+    tyn_colors_plan(&ctx->colors, frame->scene);
+    choose_storage(ctx);
+    look_at_grid(ctx, frame->scene);
+    if (view->outputs & TYN_OUTPUT_PROBE) {
+        TYN_TRY(update_points(ctx, view));
     }
     *job = (tyn_job){.method = &ctx->method->info,
                      .cpu_device = ctx->dev->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,

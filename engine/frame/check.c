@@ -78,12 +78,10 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
         return TYN_ERR_PARAMS;
     }
     tyn_frame_projection projection;
-    tyn_result result = tyn_frame_projection_find(&projection, frame, log);
-    if (result == TYN_OK && view->resume) {
-        result = check_resume(ctx, view, outputs);
+    TYN_TRY(tyn_frame_projection_find(&projection, frame, log));
+    if (view->resume) {
+        TYN_TRY(check_resume(ctx, view, outputs));
     }
-    if (result == TYN_OK) {
-        result = tyn_scene_check_values(frame->scene, log);
-    }
-    return result == TYN_OK ? tyn_frame_check_images(ctx, frame, outputs) : result;
+    TYN_TRY(tyn_scene_check_values(frame->scene, log));
+    return tyn_frame_check_images(ctx, frame, outputs);
 }

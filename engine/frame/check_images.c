@@ -91,11 +91,8 @@ static tyn_result check_results(const tyn_device *dev, const tyn_frame *frame, u
                   image->extent.width, image->extent.height, frame->view->width,
                   frame->view->height);
         }
-        const tyn_result result = check_image(dev, image, lent->what, VK_IMAGE_USAGE_STORAGE_BIT,
-                                              "VK_IMAGE_USAGE_STORAGE_BIT");
-        if (result != TYN_OK) {
-            return result;
-        }
+        TYN_TRY(check_image(dev, image, lent->what, VK_IMAGE_USAGE_STORAGE_BIT,
+                            "VK_IMAGE_USAGE_STORAGE_BIT"));
     }
     return TYN_OK;
 }
@@ -131,11 +128,8 @@ static tyn_result check_light(const tyn_device *dev, const tyn_frame_lights *lig
             FAULT("%s is %u x %u x %u; it must have 1 to 1048576 texels", names[i], e.width,
                   e.height, e.depth);
         }
-        const tyn_result result = check_image(dev, image, names[i], VK_IMAGE_USAGE_STORAGE_BIT,
-                                              "VK_IMAGE_USAGE_STORAGE_BIT");
-        if (result != TYN_OK) {
-            return result;
-        }
+        TYN_TRY(check_image(dev, image, names[i], VK_IMAGE_USAGE_STORAGE_BIT,
+                            "VK_IMAGE_USAGE_STORAGE_BIT"));
     }
     return TYN_OK;
 }
@@ -191,11 +185,8 @@ static tyn_result check_densities(const tyn_device *dev, const tyn_frame *frame)
                   "SFLOAT or UFLOAT",
                   n - 1, (int)image->format);
         }
-        const tyn_result result = check_image(dev, image, "densities", VK_IMAGE_USAGE_SAMPLED_BIT,
-                                              "VK_IMAGE_USAGE_SAMPLED_BIT");
-        if (result != TYN_OK) {
-            return result;
-        }
+        TYN_TRY(check_image(dev, image, "densities", VK_IMAGE_USAGE_SAMPLED_BIT,
+                            "VK_IMAGE_USAGE_SAMPLED_BIT"));
     }
     return TYN_OK;
 }
@@ -241,23 +232,16 @@ static tyn_result check_distinct(const tyn_frame *frame, uint32_t outputs, const
 tyn_result tyn_frame_check_images(const tyn_context *ctx, const tyn_frame *frame, uint32_t outputs)
 {
     const tyn_device *dev = ctx->dev;
-    tyn_result result = TYN_OK;
     if (outputs & TYN_OUTPUT_COMPOSITE) {
-        result = check_color(dev, frame->color, frame->view);
-        if (result == TYN_OK && frame->depth) {
-            result = check_depth(dev, frame);
-        }
+        TYN_TRY(check_color(dev, frame->color, frame->view));
     }
-    if (result == TYN_OK) {
-        result = check_results(dev, frame, outputs);
+    if (outputs & TYN_OUTPUT_COMPOSITE && frame->depth) {
+        TYN_TRY(check_depth(dev, frame));
     }
-    if (result == TYN_OK) {
-        result = check_light(dev, &frame->light, outputs & TYN_OUTPUT_LIGHT);
-    }
-    if (result == TYN_OK) {
-        result = check_densities(dev, frame);
-    }
-    return result == TYN_OK ? check_distinct(frame, outputs, &dev->log) : result;
+    TYN_TRY(check_results(dev, frame, outputs));
+    TYN_TRY(check_light(dev, &frame->light, outputs & TYN_OUTPUT_LIGHT));
+    TYN_TRY(check_densities(dev, frame));
+    return check_distinct(frame, outputs, &dev->log);
 }
 
 tyn_result tyn_frame_check_content(const tyn_context *ctx, const tyn_frame *frame)

@@ -1,16 +1,12 @@
 // declare.c -- a frame as nodes of the graph.
 #include "frame/context.h"
+#include "base/fault.h"
 
 tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
 {
-    tyn_result result = tyn_frame_check(ctx, frame);
     tyn_job job;
-    if (result == TYN_OK) {
-        result = tyn_frame_build(ctx, frame, &job);
-    }
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(tyn_frame_check(ctx, frame));
+    TYN_TRY(tyn_frame_build(ctx, frame, &job));
     ctx->outputs = job.outputs;
     tyn_graph_begin(ctx->graph);
     *tyn_graph_mode(ctx->graph) = (tyn_record_mode){.recompute = frame->recompute,
@@ -24,6 +20,6 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
             job.hooks[i]->prepare(ctx->graph, &job);
         }
     }
-    result = ctx->method->declare(ctx->graph, &job);
-    return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
+    TYN_TRY(ctx->method->declare(ctx->graph, &job));
+    return tyn_graph_status(ctx->graph);
 }

@@ -1,5 +1,6 @@
 // frame_scene.c -- turns a scene and a view into the blocks that shaders read.
 #include "frame/frame_scene.h"
+#include "base/fault.h"
 #include "scene/matrix.h"
 #include "scene/phase.h"
 #include "shaders/light/shadow_args.h"
@@ -579,10 +580,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     }
     // The atlas can serve as the density texture if it holds this grid alone.
     tyn_atlas atlas;
-    tyn_result result = tyn_atlas_plan(&atlas, scene, log);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(tyn_atlas_plan(&atlas, scene, log));
     const bool colors = scene->num_shapes && has_colors(&scene->media[scene->shapes[0].medium]);
     out->direct = unsheared && !mirrored && !colors && scene->shapes[0].kind == TYN_SHAPE_BOX &&
                   (scene->media[scene->shapes[0].medium].volume < 0

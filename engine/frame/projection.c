@@ -175,10 +175,7 @@ static tyn_result from_camera(tyn_frame_projection *out, const tyn_frame *frame,
     const tyn_view *view = frame->view;
     const tyn_camera *camera = &view->camera;
     const float *m = frame->view_to_clip;
-    const tyn_result result = tyn_camera_check(camera, 0, log);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(tyn_camera_check(camera, 0, log));
     for (int a = 0; a < 3; a++) {
         out->origin[a] = (double)camera->position[a];
         out->right[a] = (double)camera->right[a];
@@ -212,12 +209,8 @@ tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame 
 {
     static const float none[16] = {0};
     *out = (tyn_frame_projection){0};
-    const tyn_result result = memcmp(frame->world_to_view, none, sizeof none) == 0
-                                  ? from_camera(out, frame, log)
-                                  : from_matrices(out, frame, log);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(memcmp(frame->world_to_view, none, sizeof none) == 0 ? from_camera(out, frame, log)
+                                                                 : from_matrices(out, frame, log));
     const tyn_view *view = frame->view;
     const bool part = view->whole[0] || view->whole[1];
     if (part && !tyn_frame_is_part(view)) {

@@ -1,5 +1,6 @@
 // record.c -- prepares a frame, records it into the caller's command buffer, and gives out what it made.
 #include "frame/context.h"
+#include "base/fault.h"
 #include "base/given.h"
 #include <tyndall/extend/hash.h>
 #include "gpu/device.h"
@@ -12,27 +13,23 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
         return TYN_ERR_PARAMS;
     }
     tyn_context_clear_warnings(ctx);
-    tyn_result result = tyn_frame_declare(ctx, frame);
-    uint64_t data = 0;
-    if (result == TYN_OK) {
-        data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash);
-        data = tyn_hash_u64(data, tyn_colors_hash(frame->scene));
-        const uint64_t phases = tyn_phase_tables_hash(frame->scene);
-        data = phases ? tyn_hash_u64(data, phases) : data;
+    TYN_TRY(tyn_frame_declare(ctx, frame));
+    uint64_t data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash);
+    data = tyn_hash_u64(data, tyn_colors_hash(frame->scene));
+    const uint64_t phases = tyn_phase_tables_hash(frame->scene);
+    data = phases ? tyn_hash_u64(data, phases) : data;
+    if (data != ctx->checked_data) {
+        ctx->checked_data = 0;
+        TYN_TRY(tyn_scene_check_data(frame->scene, &ctx->dev->log));
+        ctx->checked_data = data;
     }
-    if (result == TYN_OK && data != ctx->checked_data) {
-        result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
-        ctx->checked_data = result == TYN_OK ? data : 0;
-    }
-    if (result == TYN_OK && tyn_graph_matches(ctx->graph)) {
+    if (tyn_graph_matches(ctx->graph)) {
         tyn_graph_trim(ctx->graph);
-    } else if (result == TYN_OK) {
-        result = tyn_graph_compile(ctx->graph);
+    } else {
+        TYN_TRY(tyn_graph_compile(ctx->graph));
     }
-    if (result == TYN_OK) {
-        ctx->sizes = tyn_frame_sizes(ctx, frame);
-    }
-    return result;
+    ctx->sizes = tyn_frame_sizes(ctx, frame);
+    return TYN_OK;
 }
 
 tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
@@ -44,13 +41,10 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
         tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "tyn_frame: cmd is required");
         return TYN_ERR_PARAMS;
     }
-    tyn_result result = tyn_frame_declare(ctx, frame);
-    if (result == TYN_OK) {
-        result = tyn_frame_check_content(ctx, frame);
-    }
-    tyn_graph_mode(ctx->graph)->yields =
-        result == TYN_OK && ctx->sizes == tyn_frame_sizes(ctx, frame);
-    return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
+    TYN_TRY(tyn_frame_declare(ctx, frame));
+    TYN_TRY(tyn_frame_check_content(ctx, frame));
+    tyn_graph_mode(ctx->graph)->yields = ctx->sizes == tyn_frame_sizes(ctx, frame);
+    return tyn_graph_record(ctx->graph, frame->cmd);
 }
 
 void tyn_context_forget(tyn_context *ctx)

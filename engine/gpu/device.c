@@ -1,5 +1,6 @@
 // device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
 #include "gpu/compiler.h"
+#include "base/fault.h"
 #include "base/given.h"
 #include <dlfcn.h>
 #include <stdio.h>
@@ -177,14 +178,23 @@ static tyn_result check_formats(const tyn_device *dev)
     return TYN_OK;
 }
 
+void tyn_device_describe(const tyn_procs *vk, VkPhysicalDevice device,
+                         VkPhysicalDeviceProperties *properties, char driver[256])
+{
+    VkPhysicalDeviceDriverProperties of_driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                       .pNext = &of_driver};
+    vk->GetPhysicalDeviceProperties2(device, &all);
+    *properties = all.properties;
+    snprintf(driver, 256, "%.127s %.126s", of_driver.driverName, of_driver.driverInfo);
+}
+
 tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
                            const tyn_pipeline_params *pipelines)
 {
     dev->get_instance_proc_addr = gipa;
-    tyn_result result = load_procs(dev, gipa);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(load_procs(dev, gipa));
     if (pipelines->threads > TYN_MAX_COMPILE_THREADS) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "compile_threads is %u; it must be 0 to %d",
                       pipelines->threads, TYN_MAX_COMPILE_THREADS);
@@ -194,14 +204,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     if (!dev->compiler) {
         return TYN_ERR_MEMORY;
     }
-    VkPhysicalDeviceDriverProperties driver = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-    VkPhysicalDeviceProperties2 properties = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
-    dev->vk.GetPhysicalDeviceProperties2(dev->physical_device, &properties);
-    dev->properties = properties.properties;
-    snprintf(dev->driver, sizeof dev->driver, "%.127s %.126s", driver.driverName,
-             driver.driverInfo);
+    tyn_device_describe(&dev->vk, dev->physical_device, &dev->properties, dev->driver);
     dev->vk.GetPhysicalDeviceMemoryProperties(dev->physical_device, &dev->memory);
     VkImageFormatProperties image = {.maxResourceSize = 0};
     const VkResult known = dev->vk.GetPhysicalDeviceImageFormatProperties(
@@ -234,10 +237,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
                       dev->queue_family);
         return TYN_ERR_PARAMS;
     }
-    result = check_formats(dev);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(check_formats(dev));
 
     const struct {
         VkSamplerAddressMode u;
@@ -250,10 +250,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     };
     for (size_t i = 0; i < sizeof samplers / sizeof samplers[0]; i++) {
         VkResult made = create_sampler(dev, samplers[i].u, samplers[i].filter, samplers[i].out);
-        result = tyn_vk_check(dev, made, "vkCreateSampler");
-        if (result != TYN_OK) {
-            return result;
-        }
+        TYN_TRY(tyn_vk_check(dev, made, "vkCreateSampler"));
     }
     return tyn_pipeline_cache_create(dev, pipelines->cache, pipelines->cache_size);
 }

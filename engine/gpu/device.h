@@ -70,6 +70,9 @@ typedef struct tyn_pipeline_params {
     tyn_jobs jobs;
 } tyn_pipeline_params;
 
+void tyn_device_describe(const tyn_procs *vk, VkPhysicalDevice device,
+                         VkPhysicalDeviceProperties *properties, char driver[256]);
+
 // Shared by tyn_device_create and tyn_device_open: loads functions, makes samplers, cache and compiler.
 tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
                            const tyn_pipeline_params *pipelines);

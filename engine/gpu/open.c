@@ -1,5 +1,6 @@
 // open.c -- a device of our own: the loader at run time, instance, validation, choice of device.
 #include "gpu/compiler.h"
+#include "base/fault.h"
 #include "base/given.h"
 #include <ctype.h>
 #include <dlfcn.h>
@@ -57,6 +58,19 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
     return VK_FALSE;
 }
 
+static VkDebugUtilsMessengerCreateInfoEXT describe_messenger(tyn_device *dev)
+{
+    return (VkDebugUtilsMessengerCreateInfoEXT){
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = dev,
+    };
+}
+
 static bool has_layer(const instance_procs *procs, const char *name)
 {
     uint32_t count = 0;
@@ -97,15 +111,7 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
                       layer);
         return TYN_ERR_UNSUPPORTED;
     }
-    const VkDebugUtilsMessengerCreateInfoEXT messenger = {
-        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
-                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
-                       VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
-        .pfnUserCallback = on_message,
-        .pUserData = user,
-    };
+    const VkDebugUtilsMessengerCreateInfoEXT messenger = describe_messenger(user);
     const VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &messenger,
@@ -143,6 +149,7 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
 typedef struct candidate {
     VkPhysicalDevice device;
     VkPhysicalDeviceProperties properties;
+    char driver[256];
     const char *missing; // NULL = usable
     uint32_t queue_family;
 } candidate;
@@ -150,10 +157,7 @@ typedef struct candidate {
 static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
 {
     candidate c = {.device = device, .queue_family = UINT32_MAX};
-    VkPhysicalDeviceProperties2 properties = {.sType =
-                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
-    vk->GetPhysicalDeviceProperties2(device, &properties);
-    c.properties = properties.properties;
+    tyn_device_describe(vk, device, &c.properties, c.driver);
     if (c.properties.apiVersion < VK_API_VERSION_1_3) {
         c.missing = "Vulkan 1.3";
         return c;
@@ -266,45 +270,31 @@ static void load_instance_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
 #undef X
 }
 
+static tyn_result create_messenger(tyn_device *dev)
+{
+    const VkDebugUtilsMessengerCreateInfoEXT messenger = describe_messenger(dev);
+    PFN_vkCreateDebugUtilsMessengerEXT create =
+        (PFN_vkCreateDebugUtilsMessengerEXT)dev->get_instance_proc_addr(
+            dev->instance, "vkCreateDebugUtilsMessengerEXT");
+    dev->debug_names = true;
+    return tyn_vk_check(
+        dev, TYN_VK_MADE(&dev->messenger, create(dev->instance, &messenger, NULL, &dev->messenger)),
+        "vkCreateDebugUtilsMessengerEXT");
+}
+
 static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *params)
 {
     instance_procs procs = {.gipa = params->get_instance_proc_addr};
+    candidate c = {0};
     dev->own = true;
-    tyn_result result = load_loader(&dev->loader, &procs, &dev->log);
+    TYN_TRY(load_loader(&dev->loader, &procs, &dev->log));
     dev->get_instance_proc_addr = procs.gipa;
-    if (result == TYN_OK) {
-        result = create_instance(&procs, params->validation, dev, &dev->instance, &dev->log);
-    }
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(create_instance(&procs, params->validation, dev, &dev->instance, &dev->log));
     load_instance_procs(dev, procs.gipa);
     if (params->validation) {
-        dev->debug_names = true;
-        PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)procs.gipa(
-            dev->instance, "vkCreateDebugUtilsMessengerEXT");
-        VkResult made = TYN_VK_MADE(
-            &dev->messenger,
-            create(dev->instance,
-                   &(VkDebugUtilsMessengerCreateInfoEXT){
-                       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-                       .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
-                                          VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-                       .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
-                                      VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
-                       .pfnUserCallback = on_message,
-                       .pUserData = dev,
-                   },
-                   NULL, &dev->messenger));
-        if (made != VK_SUCCESS) {
-            return tyn_vk_check(dev, made, "vkCreateDebugUtilsMessengerEXT");
-        }
+        TYN_TRY(create_messenger(dev));
     }
-    candidate c = {0};
-    result = choose(dev, params->select, &c);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(choose(dev, params->select, &c));
     dev->physical_device = c.device;
     dev->queue_family = c.queue_family;
     VkResult made = TYN_VK_MADE(
@@ -322,17 +312,13 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
                                                .pQueuePriorities = (const float[]){1.0f}},
             },
             NULL, &dev->device));
-    result = tyn_vk_check(dev, made, "vkCreateDevice");
-    if (result == TYN_OK) {
-        result = tyn_device_init(dev, procs.gipa,
-                                 &(tyn_pipeline_params){params->pipeline_cache,
-                                                        params->pipeline_cache_size,
-                                                        params->compile_threads, params->jobs});
-    }
-    if (result == TYN_OK) {
-        dev->vk.GetDeviceQueue(dev->device, dev->queue_family, 0, &dev->queue);
-    }
-    return result;
+    TYN_TRY(tyn_vk_check(dev, made, "vkCreateDevice"));
+    TYN_TRY(
+        tyn_device_init(dev, procs.gipa,
+                        &(tyn_pipeline_params){params->pipeline_cache, params->pipeline_cache_size,
+                                               params->compile_threads, params->jobs}));
+    dev->vk.GetDeviceQueue(dev->device, dev->queue_family, 0, &dev->queue);
+    return TYN_OK;
 }
 
 tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out)
@@ -399,19 +385,13 @@ int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
     }
     for (uint32_t i = 0; i < count && i < max; i++) {
         candidate c = inspect(&dev.vk, devices[i]);
-        VkPhysicalDeviceDriverProperties driver = {
-            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-        VkPhysicalDeviceProperties2 properties = {
-            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
-        dev.vk.GetPhysicalDeviceProperties2(devices[i], &properties);
         VkPhysicalDeviceMemoryProperties memory;
         dev.vk.GetPhysicalDeviceMemoryProperties(devices[i], &memory);
         infos[i] = (tyn_device_info){.api_version = c.properties.apiVersion,
                                      .type = type_name(c.properties.deviceType),
                                      .heap_bytes = memory.memoryHeaps[0].size};
         snprintf(infos[i].name, sizeof infos[i].name, "%s", c.properties.deviceName);
-        snprintf(infos[i].driver, sizeof infos[i].driver, "%.127s %.126s", driver.driverName,
-                 driver.driverInfo);
+        snprintf(infos[i].driver, sizeof infos[i].driver, "%s", c.driver);
         snprintf(infos[i].missing, sizeof infos[i].missing, "%s", c.missing ? c.missing : "");
     }
     dev.vk.DestroyInstance(dev.instance, NULL);

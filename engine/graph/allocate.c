@@ -1,5 +1,6 @@
 // allocate.c -- Vulkan objects of resources: made and placed without memory first, bound once there is memory.
 #include "graph/internal.h"
+#include "base/fault.h"
 #include <string.h>
 
 enum { SHARED_LEAST = 64 << 10 }; // bytes
@@ -112,10 +113,7 @@ static tyn_result draft_host_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize s
                                     VkBufferUsageFlags usage, tyn_memory_kind kind,
                                     const char *name, host_buffer *out)
 {
-    const tyn_result result = make_buffer(g, size, usage, name, &out->buffer);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(make_buffer(g, size, usage, name, &out->buffer));
     VkMemoryRequirements need;
     g->dev->vk.GetBufferMemoryRequirements(g->dev->device, out->buffer, &need);
     return tyn_heap_place(g->dev, heap, &need, kind, size, &out->place);

@@ -190,10 +190,7 @@ tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *i
     tyn_surfaces *s = t->surfaces;
     if (t->loaded[from] == TYN_NO_TEXTURE) {
         tyn_texture texture;
-        tyn_result r = read_texture(t, from, &texture);
-        if (r) {
-            return r;
-        }
+        TYN_TRY(read_texture(t, from, &texture));
         tyn_texture *grown = realloc(s->textures, (s->num_textures + 1) * sizeof *grown);
         if (!grown) {
             free(texture.texels);
@@ -216,10 +213,7 @@ tyn_result tyn_gltf_texture_read(gltf_textures *t, const cJSON *info, tyn_textur
 tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4])
 {
     tyn_texture texture;
-    tyn_result r = read_texture(t, texture_index(info), &texture);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(read_texture(t, texture_index(info), &texture));
     const size_t texels = (size_t)texture.size[0] * texture.size[1];
     uint64_t histogram[4][256] = {{0}};
     for (size_t i = 0; i < texels; i++) {

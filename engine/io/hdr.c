@@ -1,5 +1,6 @@
 // hdr.c -- Radiance RGBE pictures, flat or run-length encoded, old and new style.
 #include "io/hdr.h"
+#include "base/fault.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,10 +80,7 @@ static tyn_result read_header(reader *r, uint32_t size[2], coding *c)
         } else if (strncmp(line, "EXPOSURE=", 9) == 0) {
             c->exposure *= strtod(line + 9, NULL);
         } else if (strncmp(line, "PRIMARIES=", 10) == 0) {
-            const tyn_result result = read_primaries(r, line + 10, c);
-            if (result) {
-                return result;
-            }
+            TYN_TRY(read_primaries(r, line + 10, c));
         }
     }
     if (!format) {

@@ -2,15 +2,7 @@
 #pragma once
 #include <tyndall/io.h>
 #include <cjson/cJSON.h>
-
-// Returns the fault of a call, if there is one.
-#define TYN_TRY(call)                                                                              \
-    do {                                                                                           \
-        tyn_result r_ = (call);                                                                    \
-        if (r_) {                                                                                  \
-            return r_;                                                                             \
-        }                                                                                          \
-    } while (0)
+#include "base/fault.h"
 
 typedef struct json_doc {
     const char *file;

@@ -1,5 +1,6 @@
 // png.c -- 8-bit PNG images.
 #include <tyndall/io.h>
+#include "base/fault.h"
 #include <stdlib.h>
 #include <string.h>
 #include "base/given.h"
@@ -42,10 +43,7 @@ tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uin
     uint32_t decoded[2] = {0, 0};
     const char *reason = "it does not begin as one";
     *rgba = NULL;
-    tyn_result r = tyn_file_read(path, UINT64_C(1) << 31, &bytes, &size, log);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(tyn_file_read(path, UINT64_C(1) << 31, &bytes, &size, log));
     if (size >= sizeof signature && memcmp(bytes, signature, sizeof signature) == 0) {
         *rgba = tyn_picture_decode(bytes, size, decoded, &reason);
     }

@@ -1,5 +1,6 @@
 // raw.c -- reads .raw grids.
 #include "io/raw.h"
+#include "base/fault.h"
 #include <string.h>
 #include "base/half.h"
 #include "io/volume.h"
@@ -17,10 +18,7 @@ tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
     static const uint8_t widths[] = {4, 2, 1};
     const uint8_t *p = bytes;
     tyn_volume *volume = &job->volume;
-    tyn_result r = tyn_volume_alloc(volume, size, channels, file, job->log);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(tyn_volume_alloc(volume, size, channels, file, job->log));
     job->channels = channels;
     uint64_t values = (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2] * channels;
     if (num_bytes != values * widths[type]) {
