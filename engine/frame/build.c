@@ -65,7 +65,7 @@ static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
     if (!out->direct || scene->num_volumes != 1) {
         return;
     }
-    uint64_t hash = tyn_atlas_hash(&ctx->atlas, scene);
+    uint64_t hash = tyn_atlas_hash(&ctx->atlas);
     if (hash != ctx->grid_hash) {
         ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
         ctx->mean_density = tyn_volume_mean(&scene->volumes[0]);

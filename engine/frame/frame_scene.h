@@ -14,20 +14,18 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
 // The atlas: every density grid, stacked along z in the order of scene.volumes, then one texel of 1 for
 // homogeneous media. {0,0,0} extent if the only grid is the host's image.
 typedef struct tyn_atlas {
+    const tyn_scene *scene;
+    bool colors; // that of the grids of colours, RGBA, in the order of scene.color_grids
     tyn_extent extent;
-    bool half; // R16F holds all values well
+    bool half; // R16F or RGBA16F holds all values well
     bool host; // the host brings the image
 } tyn_atlas;
 tyn_result tyn_atlas_plan(tyn_atlas *atlas, const tyn_scene *scene, const tyn_log *log);
-void tyn_atlas_fill(const tyn_atlas *atlas, const tyn_scene *scene, void *texels);
-uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene);
+void tyn_colors_plan(tyn_atlas *colors, const tyn_scene *scene); // z = 0: there are none
+void tyn_atlas_fill(void *atlas, void *texels);                  // either
+uint64_t tyn_atlas_hash(const tyn_atlas *atlas);
 uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z
-
-// The same for grids of colours: RGBA, in the order of scene.color_grids; {0,0,0} extent if there are none.
-void tyn_colors_plan(tyn_atlas *colors, const tyn_scene *scene);
-void tyn_colors_fill(const tyn_atlas *colors, const tyn_scene *scene, void *texels);
-uint64_t tyn_colors_hash(const tyn_scene *scene);
-// Where a grid is, `slot` as in tyn_medium: 1 + its index, 0: none.
+// Where a grid of colours is, `slot` as in tyn_medium: 1 + its index, 0: none.
 struct shape_colors tyn_colors_place(const tyn_scene *scene, uint32_t slot);
 
 // At which faces of its box a grid is not 0: bit 2 a for the low face of axis a, 2 a + 1 for the high one.

@@ -14,8 +14,8 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_context_clear_warnings(ctx);
     TYN_TRY(tyn_frame_declare(ctx, frame));
-    uint64_t data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash);
-    data = tyn_hash_u64(data, tyn_colors_hash(frame->scene));
+    uint64_t data = tyn_hash_u64(tyn_atlas_hash(&ctx->atlas), ctx->env_hash);
+    data = tyn_hash_u64(data, tyn_atlas_hash(&ctx->colors));
     const uint64_t phases = tyn_phase_tables_hash(frame->scene);
     data = phases ? tyn_hash_u64(data, phases) : data;
     if (data != ctx->checked_data) {

@@ -5,18 +5,6 @@
 #include "frame/output.h"
 #include <string.h>
 
-static void fill_atlas(void *user, void *texels)
-{
-    const tyn_context *ctx = user;
-    tyn_atlas_fill(&ctx->atlas, ctx->scene, texels);
-}
-
-static void fill_colors(void *user, void *texels)
-{
-    const tyn_context *ctx = user;
-    tyn_colors_fill(&ctx->colors, ctx->scene, texels);
-}
-
 static void fill_environment(void *user, void *texels)
 {
     const tyn_environment *env = &((const tyn_context *)user)->scene->environment;
@@ -25,6 +13,16 @@ static void fill_environment(void *user, void *texels)
         memcpy(out + i * 4, env->data + i * 3, 3 * sizeof(float));
         out[i * 4 + 3] = 1;
     }
+}
+
+// Of densities or of colours.
+static tyn_ref upload_atlas(tyn_graph *g, const char *name, tyn_atlas *atlas)
+{
+    static const VkFormat formats[2][2] = {
+        {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT},
+        {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT}};
+    return tyn_graph_upload_image(g, name, TYN_IMAGE_3D, formats[atlas->colors][atlas->half],
+                                  atlas->extent, tyn_atlas_fill, atlas, tyn_atlas_hash(atlas));
 }
 
 static void fill_resumed(void *user, void *texels)
@@ -103,15 +101,10 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
         refs->atlas =
             tyn_graph_import_image(g, "atlas", TYN_IMAGE_3D, &frame->densities[0], version);
     } else if (ctx->atlas.extent.z) {
-        refs->atlas = tyn_graph_upload_image(
-            g, "atlas", TYN_IMAGE_3D, ctx->atlas.half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT,
-            ctx->atlas.extent, fill_atlas, ctx, tyn_atlas_hash(&ctx->atlas, scene));
+        refs->atlas = upload_atlas(g, "atlas", &ctx->atlas);
     }
     if (ctx->colors.extent.z) {
-        refs->colors = tyn_graph_upload_image(
-            g, "colors", TYN_IMAGE_3D,
-            ctx->colors.half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
-            ctx->colors.extent, fill_colors, ctx, tyn_colors_hash(scene));
+        refs->colors = upload_atlas(g, "colors", &ctx->colors);
         tyn_graph_mark_media(g, refs->colors);
     }
     refs->medium = tyn_graph_upload_buffer(g, "medium", &f->medium, sizeof f->medium, 0);
