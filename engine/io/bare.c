@@ -1,5 +1,6 @@
 // bare.c -- chooses what makes a volume worth looking at: coefficients, a camera, a sun, a sky.
 #include "io/bare.h"
+#include "io/volume.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,13 +89,8 @@ static tyn_result add_sky(tyn_environment *env, const tyn_log *log)
 
 static tyn_result place(tyn_shape *shape, const tyn_volume *volume, const tyn_log *log)
 {
-    double box[16], m[16];
-    mat_identity(box);
-    for (int a = 0; a < 3; a++) {
-        box[a * 5] = volume->size[a];
-        box[12 + a] = 0.5 * (volume->size[a] - 1.0);
-    }
-    mat_mul(m, volume->index_to_world, box);
+    double m[16];
+    tyn_grid_box(m, volume->index_to_world, volume->size);
     if (!mat_invertible(m)) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "%s: its index-to-world transform must be affine and invertible, its "

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/given.h"
-#include <tyndall/extend/hash.h>
 #include "io/volume.h"
 
 void tyn_color_grid_finish(tyn_color_grid *colors)
@@ -16,20 +15,17 @@ void tyn_color_grid_finish(tyn_color_grid *colors)
     }
 }
 
-// What was read, as a grid of colours; `job` is empty then.
-static void take(tyn_color_grid *colors, tyn_grid_job *job, double index_to_world[16])
+tyn_color_grid tyn_grid_take_colors(tyn_grid_job *job)
 {
     const tyn_volume *v = &job->volume;
-    *colors = (tyn_color_grid){.name = v->name,
-                               .size = {v->size[0], v->size[1], v->size[2]},
-                               .channels = job->channels,
-                               .data = v->data,
-                               .max = v->max_density,
-                               .hash = v->hash};
-    if (index_to_world) {
-        memcpy(index_to_world, v->index_to_world, sizeof v->index_to_world);
-    }
+    const tyn_color_grid colors = {.name = v->name,
+                                   .size = {v->size[0], v->size[1], v->size[2]},
+                                   .channels = job->channels,
+                                   .data = v->data,
+                                   .max = v->max_density,
+                                   .hash = v->hash};
     memset(&job->volume, 0, sizeof job->volume);
+    return colors;
 }
 
 tyn_result tyn_color_grid_load(tyn_color_grid *colors, const char *path, const char *grid,
@@ -42,9 +38,10 @@ tyn_result tyn_color_grid_load(tyn_color_grid *colors, const char *path, const c
     memset(colors, 0, sizeof *colors);
     tyn_grid_job job = {.grid = grid, .use = TYN_GRID_COLOR, .log = log};
     const tyn_result r = tyn_grid_read(&job, path);
-    if (!r) {
-        take(colors, &job, index_to_world);
+    if (!r && index_to_world) {
+        memcpy(index_to_world, job.volume.index_to_world, sizeof job.volume.index_to_world);
     }
+    *colors = tyn_grid_take_colors(&job);
     if (clamped_negative) {
         *clamped_negative += job.clamped;
     }
@@ -139,7 +136,6 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
         }
     }
     free(table);
-    colors->hash = tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, size, 3 * sizeof *size),
-                                  colors->data, count * 3 * sizeof *colors->data);
+    colors->hash = tyn_grid_hash(size, 3, colors->data);
     return TYN_OK;
 }

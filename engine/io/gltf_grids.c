@@ -144,13 +144,6 @@ static void tell(tyn_scene *scene, const grids *g, int kind)
 
 // ---- one box ----------------------------------------------------------------------------------
 
-static void hash_again(tyn_volume *v, uint32_t channels)
-{
-    const size_t count = (size_t)v->size[0] * v->size[1] * v->size[2] * channels;
-    v->hash = tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, v->size, sizeof v->size), v->data,
-                             count * sizeof *v->data);
-}
-
 // Grids with transforms are brought into one box; those without fill it as they are.
 static tyn_result align(grids *g, gltf_grids *place, const json_doc *doc)
 {
@@ -181,7 +174,7 @@ static tyn_result align(grids *g, gltf_grids *place, const json_doc *doc)
         memcpy(v->size, placed[i].size, sizeof v->size);
         memcpy(v->index_to_world, placed[i].index_to_world, sizeof v->index_to_world);
         if (moved) {
-            hash_again(v, placed[i].channels);
+            v->hash = tyn_grid_hash(v->size, placed[i].channels, v->data);
         }
         place->placed = true;
         memcpy(place->index_to_world, v->index_to_world, sizeof place->index_to_world);
@@ -223,14 +216,15 @@ static tyn_result add_volume(tyn_scene *scene, tyn_volume *volume, const json_do
     return TYN_OK;
 }
 
-static tyn_result add_colors(tyn_scene *scene, tyn_color_grid *colors, const json_doc *doc,
+// Takes the grid, which is gone after a fault, too.
+static tyn_result add_colors(tyn_scene *scene, tyn_color_grid colors, const json_doc *doc,
                              uint32_t *slot)
 {
     for (uint32_t i = 0; i < scene->num_color_grids; i++) {
         const tyn_color_grid *other = &scene->color_grids[i];
-        if (other->hash == colors->hash && other->channels == colors->channels &&
-            memcmp(other->size, colors->size, sizeof other->size) == 0) {
-            tyn_color_grid_finish(colors);
+        if (other->hash == colors.hash && other->channels == colors.channels &&
+            memcmp(other->size, colors.size, sizeof other->size) == 0) {
+            tyn_color_grid_finish(&colors);
             *slot = i + 1;
             return TYN_OK;
         }
@@ -238,26 +232,13 @@ static tyn_result add_colors(tyn_scene *scene, tyn_color_grid *colors, const jso
     tyn_color_grid *grown =
         realloc(scene->color_grids, (scene->num_color_grids + 1) * sizeof *grown);
     if (!grown) {
+        tyn_color_grid_finish(&colors);
         return no_memory(doc);
     }
     scene->color_grids = grown;
-    grown[scene->num_color_grids++] = *colors;
+    grown[scene->num_color_grids++] = colors;
     *slot = scene->num_color_grids;
     return TYN_OK;
-}
-
-// A grid that was read, as colours; its job is empty then.
-static tyn_color_grid take(tyn_grid_job *job)
-{
-    const tyn_volume *v = &job->volume;
-    const tyn_color_grid colors = {.name = v->name,
-                                   .size = {v->size[0], v->size[1], v->size[2]},
-                                   .channels = job->channels,
-                                   .data = v->data,
-                                   .max = v->max_density,
-                                   .hash = v->hash};
-    memset(&job->volume, 0, sizeof job->volume);
-    return colors;
 }
 
 static tyn_result add_temperature(tyn_scene *scene, tyn_medium *medium, grids *g,
@@ -283,7 +264,8 @@ static tyn_result add_temperature(tyn_scene *scene, tyn_medium *medium, grids *g
     tyn_capture capture;
     tyn_capture_init(&capture);
     tyn_color_grid colors = {0};
-    tyn_result r = tyn_color_grid_of_temperatures(&colors, v->size, v->data, &how, &capture.log);
+    const tyn_result r =
+        tyn_color_grid_of_temperatures(&colors, v->size, v->data, &how, &capture.log);
     if (r) {
         return tyn_capture_fault(&capture, doc, from, r);
     }
@@ -293,11 +275,7 @@ static tyn_result add_temperature(tyn_scene *scene, tyn_medium *medium, grids *g
         tyn_scene_warn(scene, "%s: nothing is hot enough to glow: kelvins = value x scale + offset",
                        colors.name ? colors.name : "temperature");
     }
-    r = add_colors(scene, &colors, doc, &medium->radiance_grid);
-    if (r) {
-        tyn_color_grid_finish(&colors);
-    }
-    return r;
+    return add_colors(scene, colors, doc, &medium->radiance_grid);
 }
 
 static tyn_result add_emission(tyn_scene *scene, tyn_medium *medium, grids *g, const json_doc *doc,
@@ -309,17 +287,12 @@ static tyn_result add_emission(tyn_scene *scene, tyn_medium *medium, grids *g, c
         medium->emission[c] =
             (float)fmin((given ? (double)medium->emission[c] : 1) * scale, FLT_MAX);
     }
-    tyn_color_grid colors = take(&g->jobs[EMISSION]);
-    tyn_result r = add_colors(scene, &colors, doc, &medium->emission_grid);
-    if (r) {
-        tyn_color_grid_finish(&colors);
-    }
-    return r;
+    return add_colors(scene, tyn_grid_take_colors(&g->jobs[EMISSION]), doc, &medium->emission_grid);
 }
 
 static tyn_result add_albedo(tyn_scene *scene, tyn_medium *medium, grids *g, const json_doc *doc)
 {
-    tyn_color_grid colors = take(&g->jobs[ALBEDO]);
+    tyn_color_grid colors = tyn_grid_take_colors(&g->jobs[ALBEDO]);
     const size_t count = (size_t)colors.size[0] * colors.size[1] * colors.size[2] * colors.channels;
     uint64_t above = 0;
     for (size_t i = 0; i < count; i++) {
@@ -332,11 +305,7 @@ static tyn_result add_albedo(tyn_scene *scene, tyn_medium *medium, grids *g, con
         colors.max = 1;
         colors.hash = tyn_hash_bytes(colors.hash, colors.data, count * sizeof *colors.data);
     }
-    tyn_result r = add_colors(scene, &colors, doc, &medium->albedo_grid);
-    if (r) {
-        tyn_color_grid_finish(&colors);
-    }
-    return r;
+    return add_colors(scene, colors, doc, &medium->albedo_grid);
 }
 
 static tyn_result add_density(tyn_scene *scene, tyn_medium *medium, grids *g, const json_doc *doc)

@@ -60,16 +60,6 @@ tyn_result tyn_gltf_read_media(tyn_scene *scene, gltf_media *media, const json_d
 
 // ---- shapes ---------------------------------------------------------------------------------
 
-// The unit box around a grid: first voxel's outer corner at -0.5, last voxel's at +0.5.
-static void box_to_index(double m[16], const uint32_t size[3])
-{
-    mat_identity(m);
-    for (int a = 0; a < 3; a++) {
-        m[a * 5] = size[a];
-        m[12 + a] = 0.5 * (size[a] - 1.0);
-    }
-}
-
 static tyn_result read_repeat(tyn_shape *shape, const json_doc *doc, const cJSON *extension)
 {
     cJSON *repeat;
@@ -96,7 +86,7 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
     cJSON *extensions, *extension;
     const char *kind = "box";
     int64_t medium = 0;
-    double m[16], box[16];
+    double m[16];
     TYN_TRY(tyn_json_object(doc, node, "extensions", &extensions));
     TYN_TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
     if (!extension) {
@@ -125,8 +115,7 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
                 "only media with a .vdb or .nvdb density have a grid of their own");
         }
         mat_mul(m, m, own->index_to_world);
-        box_to_index(box, own->size);
-        mat_mul(m, m, box);
+        tyn_grid_box(m, m, own->size);
     } else if (strcmp(kind, "box") != 0) {
         return tyn_json_fault(doc, tyn_json_member(extension, "shape"),
                               "must be \"box\", \"sphere\" or \"grid\"");

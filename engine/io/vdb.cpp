@@ -113,41 +113,34 @@ void widen(tyn_volume_grid *g, bool *finite, const openvdb::math::Vec3<number> &
     }
 }
 
-// False: it is of another type.
-template <typename grid_type> bool find_range(tyn_volume_grid *g, const openvdb::GridBase &base)
-{
-    const grid_type *grid = dynamic_cast<const grid_type *>(&base);
-    if (grid) {
+// Types whose trees tyn_vdb_check has walked; of others what the writer has noted.
+typedef openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                          openvdb::Int64Grid, openvdb::Vec3SGrid, openvdb::Vec3DGrid,
+                          openvdb::Vec3IGrid>
+    walked;
+
+struct find_range {
+    tyn_volume_grid *g;
+
+    template <typename grid_type> void operator()(const grid_type &grid) const
+    {
         bool finite = true;
-        for (typename grid_type::ValueOnCIter it = grid->cbeginValueOn(); it; ++it) {
+        for (typename grid_type::ValueOnCIter it = grid.cbeginValueOn(); it; ++it) {
             widen(g, &finite, it.getValue());
         }
         g->has_range = g->has_range && finite;
     }
-    return grid != nullptr;
-}
-
-// Types whose trees tyn_vdb_check has walked; of others what the writer has noted.
-bool is_walked(const openvdb::GridBase &grid)
-{
-    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>() ||
-           grid.isType<openvdb::Int32Grid>() || grid.isType<openvdb::Int64Grid>() ||
-           grid.isType<openvdb::Vec3SGrid>() || grid.isType<openvdb::Vec3DGrid>() ||
-           grid.isType<openvdb::Vec3IGrid>();
-}
+};
 
 void tell(tyn_volume_grid *g, openvdb::io::File &file, const std::string &name)
 {
     openvdb::GridBase::Ptr grid = file.readGridMetadata(name);
     openvdb::CoordBBox box;
-    if (is_walked(*grid)) {
+    if (grid->apply<walked>([](const auto &) {})) {
         grid = file.readGrid(name);
         g->active_voxels = grid->activeVoxelCount();
         box = grid->evalActiveVoxelBoundingBox();
-        find_range<openvdb::FloatGrid>(g, *grid) || find_range<openvdb::DoubleGrid>(g, *grid) ||
-            find_range<openvdb::Int32Grid>(g, *grid) || find_range<openvdb::Int64Grid>(g, *grid) ||
-            find_range<openvdb::Vec3SGrid>(g, *grid) || find_range<openvdb::Vec3DGrid>(g, *grid) ||
-            find_range<openvdb::Vec3IGrid>(g, *grid);
+        grid->apply<walked>(find_range{g});
     } else if (grid->getMetadata<openvdb::Int64Metadata>("file_voxel_count") &&
                grid->getMetadata<openvdb::Vec3IMetadata>("file_bbox_min") &&
                grid->getMetadata<openvdb::Vec3IMetadata>("file_bbox_max")) {

@@ -49,6 +49,13 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t 
     return TYN_OK;
 }
 
+uint64_t tyn_grid_hash(const uint32_t size[3], uint32_t channels, const float *data)
+{
+    const size_t count = (size_t)size[0] * size[1] * size[2] * channels;
+    return tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, size, 3 * sizeof *size), data,
+                          count * sizeof *data);
+}
+
 static const char *use_name(tyn_grid_use use)
 {
     return use == TYN_GRID_DENSITY ? "density" : use == TYN_GRID_COLOR ? "colour" : "value";
@@ -86,14 +93,24 @@ tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid)
         }
     }
     volume->max_density = most;
-    volume->hash = tyn_hash_bytes(tyn_hash_bytes(TYN_HASH_SEED, volume->size, sizeof volume->size),
-                                  volume->data, (size_t)count * sizeof *volume->data);
+    volume->hash = tyn_grid_hash(volume->size, job->channels, volume->data);
     size_t room = strlen(file) + (grid ? strlen(grid) : 0) + 4;
     volume->name = malloc(room);
     if (volume->name) {
         snprintf(volume->name, room, grid ? "%s[%s]" : "%s", file, grid);
     }
     return TYN_OK;
+}
+
+void tyn_grid_box(double to_world[16], const double index_to_world[16], const uint32_t size[3])
+{
+    double box[16];
+    mat_identity(box);
+    for (int a = 0; a < 3; a++) {
+        box[a * 5] = size[a];
+        box[12 + a] = 0.5 * (size[a] - 1.0);
+    }
+    mat_mul(to_world, index_to_world, box);
 }
 
 void tyn_volume_grid_place(tyn_volume_grid *g)

@@ -48,6 +48,12 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t 
 // maximum, hashes, names the volume. Uses other than DENSITY: as tyn_grid_use says.
 tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid);
 
+// What was read, as a grid of colours; `job` is empty then.
+tyn_color_grid tyn_grid_take_colors(tyn_grid_job *job);
+
+// Of a grid's size and values.
+uint64_t tyn_grid_hash(const uint32_t size[3], uint32_t channels, const float *data);
+
 // What a grid is by its name: density, temperature, velocity, ...
 typedef enum tyn_grid_role {
     TYN_ROLE_UNKNOWN = 0,
@@ -70,6 +76,9 @@ typedef struct tyn_grid_entry {
 } tyn_grid_entry;
 int tyn_volume_choose(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t count,
                       const char *file);
+
+// From the unit box around a grid to the world: first voxel's outer corner at -0.5, last voxel's at +0.5.
+void tyn_grid_box(double to_world[16], const double index_to_world[16], const uint32_t size[3]);
 
 // Voxel sizes and the box in the world, from index_to_world and the box of indices.
 void tyn_volume_grid_place(tyn_volume_grid *grid);
