@@ -103,11 +103,11 @@ static int64_t stream_size(exr_const_context_t context, void *user)
     return (int64_t)((const stream *)user)->size;
 }
 
-// A picture being read: the data window starts at (x0, y0).
+// A picture being read: the data window starts in line y0.
 typedef struct picture {
     exr_context_t context;
     tyn_image_file *image;
-    int32_t x0, y0;
+    int32_t y0;
     exr_decode_pipeline_t decode;
     bool decoding;
     void *unread; // a line of a channel that is left out
@@ -150,35 +150,22 @@ static exr_result_t read_chunk(picture *p, const exr_chunk_info_t *chunk, int32_
     return e == EXR_ERR_SUCCESS ? exr_decoding_run(p->context, 0, &p->decode) : e;
 }
 
-static exr_result_t read_lines(picture *p)
+// Tiles, or bands of lines, which are tiles as wide as the image.
+static exr_result_t read_chunks(picture *p, bool tiled)
 {
-    int32_t step;
-    exr_result_t e = exr_get_scanlines_per_chunk(p->context, 0, &step);
-    for (int64_t y = 0; e == EXR_ERR_SUCCESS && y < p->image->height; y += step) {
-        exr_chunk_info_t chunk;
-        e = exr_read_scanline_chunk_info(p->context, 0, (int32_t)(p->y0 + y), &chunk);
-        if (e == EXR_ERR_SUCCESS) {
-            e = read_chunk(p, &chunk, 0, (int32_t)y);
-        }
-    }
-    return e;
-}
-
-static exr_result_t read_tiles(picture *p)
-{
-    int32_t width, height;
-    exr_result_t e = exr_get_tile_sizes(p->context, 0, 0, 0, &width, &height);
+    int32_t width = (int32_t)p->image->width, height = 0;
+    exr_result_t e = tiled ? exr_get_tile_sizes(p->context, 0, 0, 0, &width, &height)
+                           : exr_get_scanlines_per_chunk(p->context, 0, &height);
     if (e == EXR_ERR_SUCCESS && (width < 1 || height < 1)) {
         return EXR_ERR_INVALID_ATTR;
     }
     for (int64_t y = 0; e == EXR_ERR_SUCCESS && y < p->image->height; y += height) {
         for (int64_t x = 0; e == EXR_ERR_SUCCESS && x < p->image->width; x += width) {
             exr_chunk_info_t chunk;
-            e = exr_read_tile_chunk_info(p->context, 0, (int)(x / width), (int)(y / height), 0, 0,
-                                         &chunk);
-            if (e == EXR_ERR_SUCCESS) {
-                e = read_chunk(p, &chunk, (int32_t)x, (int32_t)y);
-            }
+            e = tiled ? exr_read_tile_chunk_info(p->context, 0, (int)(x / width), (int)(y / height),
+                                                 0, 0, &chunk)
+                      : exr_read_scanline_chunk_info(p->context, 0, (int32_t)(p->y0 + y), &chunk);
+            e = e == EXR_ERR_SUCCESS ? read_chunk(p, &chunk, (int32_t)x, (int32_t)y) : e;
         }
     }
     return e;
@@ -255,7 +242,6 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     }
     p->image->width = (uint32_t)width;
     p->image->height = (uint32_t)height;
-    p->x0 = window.min.x;
     p->y0 = window.min.y;
     exr_attr_box2i_t shown;
     if (exr_get_display_window(p->context, 0, &shown) == EXR_ERR_SUCCESS &&
@@ -276,7 +262,7 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
         tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to read it", file);
         return TYN_ERR_MEMORY;
     }
-    e = storage == EXR_STORAGE_TILED ? read_tiles(p) : read_lines(p);
+    e = read_chunks(p, storage == EXR_STORAGE_TILED);
     return e == EXR_ERR_SUCCESS ? TYN_OK : report(s, e, file, log);
 }
 
