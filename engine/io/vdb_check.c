@@ -84,31 +84,23 @@ static const uint8_t *take(walk *w, uint64_t count)
     return bytes;
 }
 
-static uint32_t take_u32(walk *w)
-{
-    const uint8_t *b = take(w, 4);
-    uint32_t value = 0;
-    if (b) {
-        memcpy(&value, b, sizeof value);
-    }
-    return value;
-}
-
-static int64_t take_i64(walk *w)
-{
-    const uint8_t *b = take(w, 8);
-    int64_t value = 0;
-    if (b) {
-        memcpy(&value, b, sizeof value);
-    }
-    return value;
-}
-
 static uint32_t read_u32(const uint8_t *bytes)
 {
     uint32_t value;
     memcpy(&value, bytes, sizeof value);
     return value;
+}
+
+static uint32_t take_u32(walk *w)
+{
+    const uint8_t *b = take(w, 4);
+    return b ? read_u32(b) : 0;
+}
+
+static int64_t take_i64(walk *w)
+{
+    const uint8_t *b = take(w, 8);
+    return b ? (int64_t)((uint64_t)read_u32(b + 4) << 32 | read_u32(b)) : 0;
 }
 
 // A text with its length before it. `text` holds as much of it as fits.
