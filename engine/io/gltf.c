@@ -133,8 +133,7 @@ static tyn_result add_camera(walk *w, const gltf_node *node, int64_t index)
     tyn_camera *grown =
         realloc(w->scene->cameras, (w->scene->num_cameras + 1) * sizeof *w->scene->cameras);
     if (!grown) {
-        tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its cameras", w->doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(w->doc, "cameras");
     }
     w->scene->cameras = grown;
     // By their place in the file's list, which is how they are asked for, then in the nodes' order.
@@ -261,8 +260,7 @@ static tyn_result walk_nodes(walk *w)
     int64_t *stack = calloc((size_t)count + 1, sizeof *stack), top = 0;
     tyn_result r = TYN_OK;
     if (!stack) {
-        tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes", w->doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(w->doc, "nodes");
     }
     push_all(tyn_json_member(shown, "nodes"), stack, &top);
     for (int64_t i = count; !shown && i-- > 0;) {

@@ -214,9 +214,8 @@ static tyn_result check_texture_info(const checker *c, const cJSON *parent, cons
 
 static tyn_result check_material(const checker *c, const cJSON *material)
 {
-    cJSON *pbr, *extensions, *gloss;
-    TYN_TRY(tyn_json_object(c->doc, material, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_materials_pbrSpecularGlossiness", &gloss));
+    cJSON *pbr, *gloss;
+    TYN_TRY(tyn_json_extension(c->doc, material, "KHR_materials_pbrSpecularGlossiness", &gloss));
     TYN_TRY(check_texture_info(c, gloss, "diffuseTexture"));
     TYN_TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
     TYN_TRY(check_texture_info(c, pbr, "baseColorTexture"));
@@ -296,14 +295,13 @@ static tyn_result check_camera(const checker *c, const cJSON *camera)
 
 static tyn_result check_node(const checker *c, const cJSON *node)
 {
-    cJSON *extensions, *lights;
+    cJSON *lights;
     const char *name;
     TYN_TRY(tyn_json_string(c->doc, node, "name", &name));
     TYN_TRY(check_index(c, node, "camera", GLTF_CAMERAS));
     TYN_TRY(check_index(c, node, "mesh", GLTF_MESHES));
     TYN_TRY(check_indices(c, node, "children", GLTF_NODES));
-    TYN_TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
+    TYN_TRY(tyn_json_extension(c->doc, node, "KHR_lights_punctual", &lights));
     return check_index(c, lights, "light", GLTF_LIGHTS);
 }
 
@@ -312,74 +310,10 @@ static tyn_result check_scene(const checker *c, const cJSON *scene)
     return check_indices(c, scene, "nodes", GLTF_NODES);
 }
 
-// Every node has at most one parent and is its own ancestor nowhere.
-static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
-{
-    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
-        parent[i] = -1;
-    }
-    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
-        const cJSON *child;
-        cJSON_ArrayForEach(child, tyn_json_member(c->lists[GLTF_NODES].items[i], "children"))
-        {
-            int64_t k = (int64_t)child->valuedouble;
-            if (parent[k] >= 0) {
-                return tyn_json_fault(c->doc, child, "node %lld has two parents, %lld and %lld",
-                                      (long long)k, (long long)parent[k], (long long)i);
-            }
-            parent[k] = i;
-        }
-    }
-    // Walk upwards; 1 = on this walk, 2 = known to end at a root.
-    for (int64_t i = 0; i < c->lists[GLTF_NODES].count; i++) {
-        int64_t k = i;
-        for (; k >= 0 && !state[k]; k = parent[k]) {
-            state[k] = 1;
-        }
-        if (k >= 0 && state[k] == 1) {
-            return tyn_json_fault(c->doc,
-                                  tyn_json_member(c->lists[GLTF_NODES].items[k], "children"),
-                                  "nodes form a cycle: node %lld is below itself", (long long)k);
-        }
-        for (k = i; k >= 0 && state[k] == 1; k = parent[k]) {
-            state[k] = 2;
-        }
-    }
-    for (int64_t s = 0; s < c->lists[GLTF_SCENES].count; s++) {
-        const cJSON *root;
-        memset(state, 0, (size_t)c->lists[GLTF_NODES].count);
-        cJSON_ArrayForEach(root, tyn_json_member(c->lists[GLTF_SCENES].items[s], "nodes"))
-        {
-            int64_t k = (int64_t)root->valuedouble;
-            if (parent[k] >= 0 || state[k]) {
-                return tyn_json_fault(c->doc, root, "must be a root node, named once");
-            }
-            state[k] = 1;
-        }
-    }
-    return TYN_OK;
-}
-
 static tyn_result check_light(const checker *c, const cJSON *light)
 {
     tyn_light unused;
     return tyn_gltf_read_light(&unused, c->doc, light);
-}
-
-static tyn_result check_hierarchy(const checker *c)
-{
-    size_t count = (size_t)c->lists[GLTF_NODES].count + 1;
-    int64_t *parent = calloc(count, sizeof *parent);
-    uint8_t *state = calloc(count, 1);
-    tyn_result r = TYN_ERR_MEMORY;
-    if (parent && state) {
-        r = check_trees(c, parent, state);
-    } else {
-        tyn_log_print(c->doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes", c->doc->file);
-    }
-    free(parent);
-    free(state);
-    return r;
 }
 
 // ---- all --------------------------------------------------------------------------------------
@@ -405,11 +339,10 @@ static tyn_result (*const checks[GLTF_NUM_LISTS])(const checker *c, const cJSON 
 tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NUM_LISTS])
 {
     const checker c = {.doc = doc, .glb = glb, .lists = lists};
-    cJSON *extensions, *lights;
+    cJSON *lights;
     TYN_TRY(check_asset(&c));
     TYN_TRY(tyn_gltf_check_required(doc));
-    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
+    TYN_TRY(tyn_json_extension(doc, doc->root, "KHR_lights_punctual", &lights));
     for (int k = 0; k < GLTF_NUM_LISTS; k++) {
         TYN_TRY(tyn_json_list(doc, k == GLTF_LIGHTS ? lights : doc->root, tyn_gltf_lists[k],
                               &lists[k]));
@@ -419,6 +352,5 @@ tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NU
             TYN_TRY(checks[k](&c, lists[k].items[i]));
         }
     }
-    TYN_TRY(check_index(&c, doc->root, "scene", GLTF_SCENES));
-    return check_hierarchy(&c);
+    return check_index(&c, doc->root, "scene", GLTF_SCENES);
 }

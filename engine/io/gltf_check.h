@@ -21,7 +21,6 @@ typedef enum gltf_kind {
 extern const char *const tyn_gltf_lists[GLTF_NUM_LISTS]; // what they are called
 
 // What reads the file follows indices, offsets and types on trust, so these are checked here:
-// required extensions, index ranges, extents of accessors and buffer views, and that nodes form
-// trees. Values of cameras and lights are checked as well. `glb`: buffer 0 may have
+// required extensions, index ranges, extents of accessors and buffer views. Values of cameras and lights are checked as well. `glb`: buffer 0 may have
 // no uri. `lists`: empty at first; items are freed with free(), after a fault too.
 tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NUM_LISTS]);

@@ -185,12 +185,6 @@ static tyn_result align(grids *g, gltf_grids *place, const json_doc *doc)
 
 // ---- into the scene ---------------------------------------------------------------------------
 
-static tyn_result no_memory(const json_doc *doc)
-{
-    tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its volumes", doc->file);
-    return TYN_ERR_MEMORY;
-}
-
 static tyn_result add_volume(tyn_scene *scene, tyn_volume *volume, const json_doc *doc,
                              int32_t *index)
 {
@@ -207,7 +201,7 @@ static tyn_result add_volume(tyn_scene *scene, tyn_volume *volume, const json_do
     }
     tyn_volume *grown = realloc(scene->volumes, (scene->num_volumes + 1) * sizeof *grown);
     if (!grown) {
-        return no_memory(doc);
+        return tyn_json_no_memory(doc, "volumes");
     }
     scene->volumes = grown;
     *index = (int32_t)scene->num_volumes;
@@ -233,7 +227,7 @@ static tyn_result add_colors(tyn_scene *scene, tyn_color_grid colors, const json
         realloc(scene->color_grids, (scene->num_color_grids + 1) * sizeof *grown);
     if (!grown) {
         tyn_color_grid_finish(&colors);
-        return no_memory(doc);
+        return tyn_json_no_memory(doc, "volumes");
     }
     scene->color_grids = grown;
     grown[scene->num_color_grids++] = colors;

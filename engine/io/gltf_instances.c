@@ -45,10 +45,9 @@ static tyn_result read_attribute(gltf_instances *instances, const gltf_data *dat
 tyn_result tyn_gltf_instances_read(gltf_instances *instances, const gltf_data *data,
                                    const cJSON *node)
 {
-    cJSON *extensions, *instancing, *attributes;
+    cJSON *instancing, *attributes;
     *instances = (gltf_instances){0};
-    TYN_TRY(tyn_json_object(data->doc, node, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(data->doc, extensions, "EXT_mesh_gpu_instancing", &instancing));
+    TYN_TRY(tyn_json_extension(data->doc, node, "EXT_mesh_gpu_instancing", &instancing));
     TYN_TRY(tyn_json_object(data->doc, instancing, "attributes", &attributes));
     tyn_result r =
         read_attribute(instances, data, attributes, "TRANSLATION", 3, &instances->translations);

@@ -24,8 +24,7 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     m->loaded = calloc((size_t)m->list->count + 1, sizeof *m->loaded);
     m->is_loaded = calloc((size_t)m->list->count + 1, sizeof *m->is_loaded);
     if (!m->loaded || !m->is_loaded) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(doc, "materials");
     }
     return TYN_OK;
 }
@@ -70,18 +69,7 @@ void tyn_gltf_materials_close(gltf_materials *m)
 
 static void lack(gltf_materials *m, int64_t index, gltf_material_lack which)
 {
-    if (m->lacks[which].count++ == 0) {
-        const cJSON *name =
-            index < m->list->count ? tyn_json_member(m->list->items[index], "name") : NULL;
-        char *text = m->lacks[which].name;
-        if (cJSON_IsString(name)) {
-            snprintf(text, sizeof m->lacks[which].name, "'%s'", name->valuestring);
-        } else if (index < m->list->count) {
-            snprintf(text, sizeof m->lacks[which].name, "%lld", (long long)index);
-        } else {
-            snprintf(text, sizeof m->lacks[which].name, "of meshes without one");
-        }
-    }
+    tyn_gltf_note(&m->lacks[which], m->list, index, "of meshes without one");
 }
 
 // ---- reading ----------------------------------------------------------------------------------
@@ -90,10 +78,9 @@ static tyn_result read_place(const json_doc *doc, const cJSON *info, gltf_textur
 {
     int64_t texcoord = 0;
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
-    cJSON *extensions, *transform;
+    cJSON *transform;
     TYN_TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
-    TYN_TRY(tyn_json_object(doc, info, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
+    TYN_TRY(tyn_json_extension(doc, info, "KHR_texture_transform", &transform));
     const char *finite = "a finite number";
     TYN_TRY(
         tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
@@ -142,20 +129,11 @@ static tyn_result read_factors(const json_doc *doc, const cJSON *json, double fa
     return TYN_OK;
 }
 
-// What a material has by an extension in place of the metallic-roughness model: NULL, or that object.
-static tyn_result read_extension(const json_doc *doc, const cJSON *json, const char *name,
-                                 cJSON **out)
-{
-    cJSON *extensions;
-    TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
-    return tyn_json_object(doc, extensions, name, out);
-}
-
 // Of specular-glossiness its diffuse factor in place of the base colour's.
 static tyn_result read_diffuse_factor(const json_doc *doc, const cJSON *json, double factor[4])
 {
     cJSON *gloss;
-    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    TYN_TRY(tyn_json_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
     if (!gloss) {
         return TYN_OK;
     }
@@ -167,7 +145,7 @@ static tyn_result read_diffuse_factor(const json_doc *doc, const cJSON *json, do
 static tyn_result read_diffuse_texture(const json_doc *doc, const cJSON *json, cJSON **info)
 {
     cJSON *gloss, *pbr;
-    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    TYN_TRY(tyn_json_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
     if (gloss) {
         return tyn_json_object(doc, gloss, "diffuseTexture", info);
     }
@@ -181,8 +159,8 @@ static tyn_result read_metallic(gltf_materials *m, int64_t index, const cJSON *j
     const json_doc *doc = m->textures.data->doc;
     double mean[4];
     cJSON *pbr, *metal, *unlit, *gloss;
-    TYN_TRY(read_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
-    TYN_TRY(read_extension(doc, json, "KHR_materials_unlit", &unlit));
+    TYN_TRY(tyn_json_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
+    TYN_TRY(tyn_json_extension(doc, json, "KHR_materials_unlit", &unlit));
     if (gloss || unlit) {
         lack(m, index, gloss ? LACK_GLOSS : LACK_UNLIT);
         *out = 0;
@@ -226,9 +204,8 @@ static tyn_result read_emission(gltf_materials *m, const cJSON *json, gltf_mater
 {
     const json_doc *doc = m->textures.data->doc;
     double strength = 1;
-    cJSON *extensions, *strong, *info;
-    TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
+    cJSON *strong, *info;
+    TYN_TRY(tyn_json_extension(doc, json, "KHR_materials_emissive_strength", &strong));
     TYN_TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
     TYN_TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
     if (info && factor[0] + factor[1] + factor[2] > 0) {
@@ -310,13 +287,6 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     return TYN_OK;
 }
 
-static tyn_result no_memory(const gltf_materials *m)
-{
-    const json_doc *doc = m->textures.data->doc;
-    tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
-    return TYN_ERR_MEMORY;
-}
-
 static tyn_result add(gltf_materials *m, const tyn_surface_material *material, uint32_t *index)
 {
     tyn_surfaces *s = &m->scene->surfaces;
@@ -325,7 +295,7 @@ static tyn_result add(gltf_materials *m, const tyn_surface_material *material, u
     tyn_surface_material *grown =
         n & (n - 1) ? s->materials : realloc(s->materials, (n ? 2 * n : 1) * sizeof *grown);
     if (!grown) {
-        return no_memory(m);
+        return tyn_json_no_memory(m->textures.data->doc, "materials");
     }
     s->materials = grown;
     *index = s->num_materials;
@@ -386,7 +356,7 @@ tyn_result tyn_gltf_material_paint(gltf_materials *m, const gltf_material *mater
         surface.emission[c] *= glow[c];
     }
     if (!make_room(m)) {
-        return no_memory(m);
+        return tyn_json_no_memory(m->textures.data->doc, "materials");
     }
     painted_material *found = find(m->painted, m->painted_room, &wanted);
     if (!found->material) {

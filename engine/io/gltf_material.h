@@ -39,10 +39,7 @@ typedef struct gltf_materials {
     struct gltf_painted_material
         *painted; // open addressing: which of the scene's materials are what of these
     uint32_t num_painted, painted_room;
-    struct {
-        char name[64];
-        uint32_t count;
-    } lacks[NUM_LACKS];
+    gltf_note lacks[NUM_LACKS];
 } gltf_materials;
 tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn_scene *scene);
 void tyn_gltf_materials_close(gltf_materials *m); // the scene is warned of what is not done

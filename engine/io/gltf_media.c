@@ -42,11 +42,10 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
 
 tyn_result tyn_gltf_read_media(tyn_scene *scene, gltf_media *media, const json_doc *doc)
 {
-    cJSON *extensions, *extension, *list;
+    cJSON *extension, *list;
     const cJSON *element;
     memset(media, 0, sizeof *media);
-    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    TYN_TRY(tyn_json_extension(doc, doc->root, "TYN_participating_media", &extension));
     TYN_TRY(tyn_json_array(doc, extension, "media", &list));
     cJSON_ArrayForEach(element, list)
     {
@@ -83,12 +82,11 @@ static tyn_result read_repeat(tyn_shape *shape, const json_doc *doc, const cJSON
 tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const json_doc *doc,
                                const cJSON *node, const double to_world[16])
 {
-    cJSON *extensions, *extension;
+    cJSON *extension;
     const char *kind = "box";
     int64_t medium = 0;
     double m[16];
-    TYN_TRY(tyn_json_object(doc, node, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    TYN_TRY(tyn_json_extension(doc, node, "TYN_participating_media", &extension));
     if (!extension) {
         return TYN_OK;
     }
@@ -169,10 +167,9 @@ static tyn_result read_map(tyn_environment *env, const json_doc *doc, const cJSO
 
 tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, const cJSON *gltf_scene)
 {
-    cJSON *extensions, *extension, *list;
+    cJSON *extension, *list;
     int64_t index = 0;
-    TYN_TRY(tyn_json_object(doc, gltf_scene, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    TYN_TRY(tyn_json_extension(doc, gltf_scene, "TYN_environment_map", &extension));
     const cJSON *at = tyn_json_member(extension, "environment");
     if (!extension || !at) {
         return extension ? tyn_json_fault(doc, extension,
@@ -180,8 +177,7 @@ tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, cons
                                           "list of environments")
                          : TYN_OK;
     }
-    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TYN_TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    TYN_TRY(tyn_json_extension(doc, doc->root, "TYN_environment_map", &extension));
     TYN_TRY(tyn_json_array(doc, extension, "environments", &list));
     TYN_TRY(tyn_json_index(doc, at, cJSON_GetArraySize(list), "environments", &index));
     const cJSON *from = cJSON_GetArrayItem(list, (int)index);

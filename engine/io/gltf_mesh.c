@@ -59,15 +59,7 @@ void tyn_gltf_meshes_close(gltf_meshes *m)
 
 static void lack(gltf_meshes *m, int64_t mesh, int which)
 {
-    const cJSON *name = tyn_json_member(m->list->items[mesh], "name");
-    if (m->lacks[which].count++ == 0) {
-        char *text = m->lacks[which].name;
-        if (cJSON_IsString(name)) {
-            snprintf(text, sizeof m->lacks[which].name, "'%s'", name->valuestring);
-        } else {
-            snprintf(text, sizeof m->lacks[which].name, "%lld", (long long)mesh);
-        }
-    }
+    tyn_gltf_note(&m->lacks[which], m->list, mesh, "");
 }
 
 // ---- a primitive's data -----------------------------------------------------------------------
@@ -258,9 +250,7 @@ static tyn_result make_room(gltf_meshes *m, const primitive *p)
               sizeof *s->vertices) ||
         !grow((void **)&s->triangles, &m->triangle_room, (size_t)s->num_triangles + 1,
               sizeof *s->triangles)) {
-        tyn_log_print(m->data.doc->log, TYN_LOG_ERROR, "%s: no memory for its triangles",
-                      m->data.doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(m->data.doc, "triangles");
     }
     return TYN_OK;
 }

@@ -9,10 +9,7 @@ typedef struct gltf_meshes {
     int64_t facets;                      // that triangles may still be cut into
     uint64_t visited;                    // vertices and indices that were looked at
     uint32_t vertex_room, triangle_room; // that the scene's arrays have
-    struct {
-        char name[64];
-        uint32_t count;
-    } lacks[6]; // what is not done, told once each with the first mesh it is about
+    gltf_note lacks[6]; // what is not done, told once each with the first mesh it is about
 } gltf_meshes;
 tyn_result tyn_gltf_meshes_open(gltf_meshes *m, const json_doc *doc, const gltf_model *model,
                                 tyn_scene *scene);

@@ -1,6 +1,7 @@
 // gltf_model.c -- see gltf_model.h.
 #include "io/gltf_model.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "io/uri.h"
@@ -79,6 +80,7 @@ static tyn_result read_node(const json_doc *doc, const cJSON *json, gltf_node *n
     const cJSON *matrix = tyn_json_member(json, "matrix");
     const cJSON *rotation = tyn_json_member(json, "rotation");
     node->json = json;
+    node->parent = -1;
     node->has_matrix = matrix != NULL;
     node->rotation[3] = node->scale[0] = node->scale[1] = node->scale[2] = 1;
     TYN_TRY(tyn_json_numbers(doc, json, "matrix", 16, -1e15, 1e15, finite, node->matrix));
@@ -97,6 +99,53 @@ static tyn_result read_node(const json_doc *doc, const cJSON *json, gltf_node *n
     return TYN_OK;
 }
 
+// Every node has at most one parent and is its own ancestor nowhere.
+static tyn_result find_parents(gltf_node *nodes, int64_t count, const json_doc *doc)
+{
+    for (int64_t i = 0; i < count; i++) {
+        const cJSON *child;
+        cJSON_ArrayForEach(child, tyn_json_member(nodes[i].json, "children"))
+        {
+            gltf_node *node = &nodes[(int64_t)child->valuedouble];
+            if (node->parent >= 0) {
+                return tyn_json_fault(doc, child, "node %lld has two parents, %lld and %lld",
+                                      (long long)(node - nodes), (long long)node->parent,
+                                      (long long)i);
+            }
+            node->parent = i;
+        }
+    }
+    for (int64_t i = 0; i < count; i++) { // upwards, as far as no walk has come
+        int64_t k = i;
+        for (; k >= 0 && !nodes[k].walk; k = nodes[k].parent) {
+            nodes[k].walk = i + 1;
+        }
+        if (k >= 0 && nodes[k].walk == i + 1) {
+            return tyn_json_fault(doc, tyn_json_member(nodes[k].json, "children"),
+                                  "nodes form a cycle: node %lld is below itself", (long long)k);
+        }
+    }
+    return TYN_OK;
+}
+
+// A scene's nodes are roots, each named once.
+static tyn_result check_roots(gltf_model *model, const json_doc *doc)
+{
+    const json_list *scenes = &model->lists[GLTF_SCENES];
+    for (int64_t s = 0; s < scenes->count; s++) {
+        const cJSON *root;
+        cJSON_ArrayForEach(root, tyn_json_member(scenes->items[s], "nodes"))
+        {
+            gltf_node *node = &model->nodes[(int64_t)root->valuedouble];
+            if (node->parent >= 0 || node->walk == -1 - s) {
+                return tyn_json_fault(doc, root, "must be a root node, named once");
+            }
+            node->walk = -1 - s;
+        }
+    }
+    return TYN_OK;
+}
+
 tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const gltf_buffer *chunk)
 {
     const json_list *nodes = &model->lists[GLTF_NODES], *buffers = &model->lists[GLTF_BUFFERS];
@@ -105,21 +154,13 @@ tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const glt
     model->nodes = calloc((size_t)nodes->count + 1, sizeof *model->nodes);
     model->buffers = calloc((size_t)buffers->count + 1, sizeof *model->buffers);
     if (!model->nodes || !model->buffers) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes and buffers",
-                      doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(doc, "nodes and buffers");
     }
     for (int64_t i = 0; i < nodes->count; i++) {
-        model->nodes[i].parent = -1;
-    }
-    for (int64_t i = 0; i < nodes->count; i++) {
-        const cJSON *child;
         TYN_TRY(read_node(doc, nodes->items[i], &model->nodes[i]));
-        cJSON_ArrayForEach(child, tyn_json_member(nodes->items[i], "children"))
-        {
-            model->nodes[(int64_t)child->valuedouble].parent = i;
-        }
     }
+    TYN_TRY(find_parents(model->nodes, nodes->count, doc));
+    TYN_TRY(check_roots(model, doc));
     for (int64_t i = 0; i < buffers->count; i++) {
         TYN_TRY(read_buffer(doc, buffers->items[i], chunk, &model->buffers[i]));
     }
@@ -137,4 +178,19 @@ void tyn_gltf_model_finish(gltf_model *model)
     free(model->buffers);
     free(model->nodes);
     *model = (gltf_model){0};
+}
+
+void tyn_gltf_note(gltf_note *note, const json_list *list, int64_t index, const char *none)
+{
+    if (note->count++ > 0) {
+        return;
+    }
+    const cJSON *name = index < list->count ? tyn_json_member(list->items[index], "name") : NULL;
+    if (cJSON_IsString(name)) {
+        snprintf(note->name, sizeof note->name, "'%s'", name->valuestring);
+    } else if (index < list->count) {
+        snprintf(note->name, sizeof note->name, "%lld", (long long)index);
+    } else {
+        snprintf(note->name, sizeof note->name, "%s", none);
+    }
 }

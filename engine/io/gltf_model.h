@@ -9,6 +9,7 @@ typedef struct gltf_node {
     double translation[3], rotation[4], scale[3]; // rotation: quaternion x, y, z, w
     double to_world[16];                          // set by the walk over the nodes
     int64_t parent;                               // -1: a root
+    int64_t walk;                                 // by which the check of parents came here
 } gltf_node;
 
 typedef struct gltf_buffer {
@@ -26,6 +27,13 @@ typedef struct gltf_model {
 // Checks the document first. `chunk`: the binary chunk of a .glb, which the model may point into; NULL: it is none.
 tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const gltf_buffer *chunk);
 void tyn_gltf_model_finish(gltf_model *model);
+
+// Counts what a thing of a list lacks, and keeps the name of the first, or its number; `none`: behind the last.
+typedef struct gltf_note {
+    char name[64];
+    uint32_t count;
+} gltf_note;
+void tyn_gltf_note(gltf_note *note, const json_list *list, int64_t index, const char *none);
 
 // The bytes of a "data:" uri in base64; freed with free(). False if it is none, or empty.
 bool tyn_gltf_data_uri(const char *uri, void **bytes, size_t *size);

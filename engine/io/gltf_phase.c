@@ -22,8 +22,7 @@ static tyn_result read_numbers(const json_doc *doc, const cJSON *from, const cha
     }
     *out = malloc((size_t)size * sizeof **out);
     if (!*out) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, name);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(doc, name);
     }
     cJSON_ArrayForEach(element, array)
     {

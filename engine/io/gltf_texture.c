@@ -22,8 +22,7 @@ tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_s
     t->loaded = malloc(((size_t)t->textures->count + 1) * sizeof *t->loaded);
     t->missing = calloc((size_t)t->textures->count + 1, sizeof *t->missing);
     if (!t->loaded || !t->missing) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its textures", doc->file);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(doc, "textures");
     }
     for (int64_t i = 0; i < t->textures->count; i++) {
         t->loaded[i] = TYN_NO_TEXTURE;

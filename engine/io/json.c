@@ -73,6 +73,12 @@ tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *form
     return TYN_ERR_PARAMS;
 }
 
+tyn_result tyn_json_no_memory(const json_doc *doc, const char *what)
+{
+    tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, what);
+    return TYN_ERR_MEMORY;
+}
+
 // ---- parsing --------------------------------------------------------------------------------
 
 static bool too_deep(const char *text, size_t size)
@@ -192,6 +198,14 @@ tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char 
     return !*out || cJSON_IsObject(*out) ? TYN_OK : tyn_json_fault(doc, *out, "must be an object");
 }
 
+tyn_result tyn_json_extension(const json_doc *doc, const cJSON *object, const char *name,
+                              cJSON **out)
+{
+    cJSON *extensions;
+    TYN_TRY(tyn_json_object(doc, object, "extensions", &extensions));
+    return tyn_json_object(doc, extensions, name, out);
+}
+
 tyn_result tyn_json_array(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out)
 {
     *out = tyn_json_member(parent, name);
@@ -304,8 +318,7 @@ tyn_result tyn_json_list(const json_doc *doc, const cJSON *parent, const char *n
     }
     out->items = calloc((size_t)cJSON_GetArraySize(array) + 1, sizeof *out->items);
     if (!out->items) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, name);
-        return TYN_ERR_MEMORY;
+        return tyn_json_no_memory(doc, name);
     }
     cJSON_ArrayForEach(element, array)
     {

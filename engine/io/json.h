@@ -27,6 +27,9 @@ void tyn_json_path(const json_doc *doc, const cJSON *at, char *path, size_t room
 // Members of objects. A member that is not there, as of an object that is not (NULL), is no fault (the output keeps its
 // value; an object or array is NULL); one of the wrong type or range is.
 tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
+// ... of what glTF has in an object's "extensions".
+tyn_result tyn_json_extension(const json_doc *doc, const cJSON *object, const char *name,
+                              cJSON **out);
 tyn_result tyn_json_array(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_string(const json_doc *doc, const cJSON *parent, const char *name,
                            const char **out);
@@ -53,5 +56,7 @@ typedef struct json_list {
 tyn_result tyn_json_list(const json_doc *doc, const cJSON *parent, const char *name,
                          json_list *out);
 cJSON *tyn_json_member(const cJSON *parent, const char *name); // NULL: not there
+// One line, and TYN_ERR_MEMORY. `what`: "nodes".
+tyn_result tyn_json_no_memory(const json_doc *doc, const char *what);
 // A whole number that has been checked, or `missing`.
 int64_t tyn_json_whole(const cJSON *parent, const char *name, int64_t missing);
