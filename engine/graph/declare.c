@@ -1,5 +1,6 @@
 // declare.c -- building the two lists: resources and nodes.
 #include "graph/internal.h"
+#include "base/grow.h"
 #include <tyndall/extend/hash.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -31,27 +32,12 @@ tyn_result tyn_graph_status(const tyn_graph *g)
     return g->status;
 }
 
-static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)
-{
-    if (count < *cap) {
-        return array;
-    }
-    uint32_t more = *cap ? *cap * 2 : 32;
-    void *grown = realloc(array, more * element);
-    if (grown) {
-        *cap = more;
-    }
-    return grown;
-}
-
 static tyn_ref add_resource(tyn_graph *g, const resource *r)
 {
-    resource *grown = grow(g->resources, g->num_resources, &g->cap_resources, sizeof *g->resources);
-    if (!grown) {
+    if (!tyn_grow(&g->resources, &g->cap_resources, g->num_resources + 1, sizeof *r)) {
         graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", r->name);
         return (tyn_ref){0};
     }
-    g->resources = grown;
     g->resources[g->num_resources++] = *r;
     return (tyn_ref){g->num_resources, 0};
 }
@@ -443,23 +429,13 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     if (g->status != TYN_OK) {
         return g->status;
     }
-    node *grown = grow(g->nodes, g->num_nodes, &g->cap_nodes, sizeof *g->nodes);
-    size_t need = g->params_used + (pass->params_size + 15) / 16 * 16;
-    if (grown) {
-        g->nodes = grown;
-    }
-    if (grown && need > g->params_cap) {
-        uint8_t *more = realloc(g->params, need * 2);
-        if (more) {
-            g->params = more;
-            g->params_cap = need * 2;
-            for (uint32_t i = 0; i < g->num_nodes; i++) {
-                g->nodes[i].params = g->params + g->nodes[i].params_offset;
-            }
-        }
-    }
-    if (!grown || need > g->params_cap) {
+    const size_t need = g->params_used + (pass->params_size + 15) / 16 * 16;
+    if (!tyn_grow(&g->nodes, &g->cap_nodes, g->num_nodes + 1, sizeof *g->nodes) ||
+        !tyn_grow(&g->params, &g->params_cap, need, 1)) {
         return graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", pass->name);
+    }
+    for (uint32_t i = 0; i < g->num_nodes; i++) { // they may have moved
+        g->nodes[i].params = g->params + g->nodes[i].params_offset;
     }
     uint32_t index = g->num_nodes++;
     node *n = &g->nodes[index];
@@ -468,7 +444,7 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     if (pass->params_size) {
         memcpy(n->params, params, pass->params_size);
     }
-    g->params_used = need;
+    g->params_used = (uint32_t)need;
 
     connect_inputs(g, n, refs);
     if (g->status != TYN_OK) {

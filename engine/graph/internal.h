@@ -180,7 +180,7 @@ struct tyn_graph {
     node *nodes;
     uint32_t num_nodes, cap_nodes;
     uint8_t *params; // bytes of all nodes' params
-    size_t params_used, params_cap;
+    uint32_t params_used, params_cap;
     output outputs[32];
     uint32_t num_outputs;
     const char *inspect; // pass whose debug port is wanted; NULL = none

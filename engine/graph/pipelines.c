@@ -1,5 +1,6 @@
 // pipelines.c -- pipelines of a declaration: made at once, or beside the frames, which leave the host's images alone meanwhile.
 #include "graph/internal.h"
+#include "base/grow.h"
 #include <stdlib.h>
 
 tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v)
@@ -10,14 +11,8 @@ tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v)
             return TYN_OK;
         }
     }
-    if (list->count == list->cap) {
-        const uint32_t cap = list->cap ? 2 * list->cap : 32;
-        void *grown = realloc(list->items, cap * sizeof *list->items);
-        if (!grown) {
-            return TYN_ERR_MEMORY;
-        }
-        list->items = grown;
-        list->cap = cap;
+    if (!tyn_grow(&list->items, &list->cap, list->count + 1, sizeof *list->items)) {
+        return TYN_ERR_MEMORY;
     }
     tyn_variant_want(v);
     list->items[list->count++] = v;

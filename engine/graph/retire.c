@@ -3,6 +3,7 @@
 // The host makes the call i + frames_in_flight after the GPU has finished call i: that is how it says which frames are over. What
 // no frame has been recorded with since it was made goes at once.
 #include "graph/internal.h"
+#include "base/grow.h"
 #include <stdlib.h>
 
 typedef struct retired {
@@ -15,16 +16,7 @@ typedef struct retired {
 bool graph_retire_reserve(tyn_graph *g, uint32_t count)
 {
     retire_list *list = &g->retired;
-    if (list->count + count > list->cap) {
-        const uint32_t cap = list->count + count;
-        void *grown = realloc(list->items, cap * sizeof *list->items);
-        if (!grown) {
-            return false;
-        }
-        list->items = grown;
-        list->cap = cap;
-    }
-    return true;
+    return tyn_grow(&list->items, &list->cap, list->count + count, sizeof *list->items);
 }
 
 static void destroy(const tyn_graph *g, retired *r)

@@ -1,5 +1,6 @@
 // gltf_mesh.c -- meshes of a glTF file as triangles in the world.
 #include "io/gltf_mesh.h"
+#include "base/grow.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -224,20 +225,6 @@ static bool place_normal(const placement *at, const float *n, double out[3])
     return vec_normalize(out);
 }
 
-static bool grow(void **array, uint32_t *room, size_t count, size_t size)
-{
-    if (count <= *room) {
-        return true;
-    }
-    const size_t wanted = count + count / 2 + 64;
-    void *grown = wanted <= UINT32_MAX ? realloc(*array, wanted * size) : NULL;
-    if (grown) {
-        *array = grown;
-        *room = (uint32_t)wanted;
-    }
-    return grown != NULL;
-}
-
 // Room for three vertices and a triangle.
 static tyn_result make_room(gltf_meshes *m, const primitive *p)
 {
@@ -246,10 +233,10 @@ static tyn_result make_room(gltf_meshes *m, const primitive *p)
         return tyn_json_fault(m->data.doc, p->json, "there may be %d vertices and triangles in all",
                               MAX_VERTICES);
     }
-    if (!grow((void **)&s->vertices, &m->vertex_room, (size_t)s->num_vertices + 3,
-              sizeof *s->vertices) ||
-        !grow((void **)&s->triangles, &m->triangle_room, (size_t)s->num_triangles + 1,
-              sizeof *s->triangles)) {
+    if (!tyn_grow(&s->vertices, &m->vertex_room, (size_t)s->num_vertices + 3,
+                  sizeof *s->vertices) ||
+        !tyn_grow(&s->triangles, &m->triangle_room, (size_t)s->num_triangles + 1,
+                  sizeof *s->triangles)) {
         return tyn_json_no_memory(m->data.doc, "triangles");
     }
     return TYN_OK;
