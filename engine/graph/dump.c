@@ -187,14 +187,10 @@ static char *dump_dot(tyn_graph *g, const tyn_pass_desc *const *passes)
             : draws(n->pass) ? "#d3f0d3"
                              : "#cfe2ff");
         for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-            tyn_port_dir dir = n->pass->ports[p].dir;
-            if (!n->res[p] || dir == TYN_SCRATCH) {
-                continue;
-            }
-            if (dir == TYN_IN || dir == TYN_INOUT) {
+            if (graph_port(n, p, DIR_READ)) {
                 put(&t, "  r%u -> n%u;\n", n->res[p] - 1, i);
             }
-            if (dir == TYN_OUT || dir == TYN_INOUT) {
+            if (graph_port(n, p, DIR_WRITTEN)) {
                 put(&t, "  n%u -> r%u;\n", i, n->res[p] - 1);
             }
         }

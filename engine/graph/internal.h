@@ -264,6 +264,18 @@ typedef struct launch {
     uint32_t num_touches;
 } launch;
 
+// Directions of ports, as sets.
+enum {
+    DIR_READ = 1 << TYN_IN | 1 << TYN_INOUT,
+    DIR_WRITTEN = 1 << TYN_OUT | 1 << TYN_INOUT,
+    DIR_MADE = 1 << TYN_OUT | 1 << TYN_SCRATCH,
+};
+// Resource index + 1 at a port that has one of these directions; else 0.
+static inline uint32_t graph_port(const node *n, uint32_t port, unsigned dirs)
+{
+    return dirs >> n->pass->ports[port].dir & 1 ? n->res[port] : 0;
+}
+
 tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...) TYN_PRINTF(3, 4);
 void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);

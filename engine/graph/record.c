@@ -148,14 +148,10 @@ static void record_sources(tyn_recorder *rec)
 static bool outputs_current(const tyn_graph *g, const node *n, uint32_t index)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        tyn_port_dir dir = n->pass->ports[p].dir;
-        if (!n->res[p] || (dir != TYN_OUT && dir != TYN_INOUT)) {
-            continue;
-        }
-        const resource *r = &g->resources[n->res[p] - 1];
+        const uint32_t id = graph_port(n, p, DIR_WRITTEN);
+        const resource *r = id ? &g->resources[id - 1] : NULL;
         // Of a resource that later nodes change as well, only the last content can be compared.
-        bool last = r->writers[r->version] == index + 1;
-        if (last && g->phys[n->res[p] - 1].content != r->content) {
+        if (r && r->writers[r->version] == index + 1 && g->phys[id - 1].content != r->content) {
             return false;
         }
     }
@@ -216,8 +212,8 @@ static bool is_overwritten(const tyn_graph *g, const bool *run_node, uint32_t in
     for (uint32_t i = 0; g->phys[index].shared && i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
         for (uint32_t p = 0; run_node[i] && p < n->pass->num_ports; p++) {
-            if (n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH &&
-                graph_overlap(&g->phys[n->res[p] - 1], &g->phys[index])) {
+            const uint32_t id = graph_port(n, p, 1 << TYN_SCRATCH);
+            if (id && graph_overlap(&g->phys[id - 1], &g->phys[index])) {
                 return true;
             }
         }
@@ -288,10 +284,10 @@ static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)
 static void forget_overwritten(tyn_graph *g, const node *n)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        const bool scratch = n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH;
-        for (uint32_t i = 0; scratch && i < g->num_resources; i++) {
+        const uint32_t id = graph_port(n, p, 1 << TYN_SCRATCH);
+        for (uint32_t i = 0; id && i < g->num_resources; i++) {
             if (g->resources[i].kind == RESOURCE_OUT &&
-                graph_overlap(&g->phys[n->res[p] - 1], &g->phys[i])) {
+                graph_overlap(&g->phys[id - 1], &g->phys[i])) {
                 g->phys[i].content = 0;
             }
         }
@@ -303,9 +299,10 @@ static bool starts_history(tyn_graph *g, const node *n)
 {
     bool starts = false;
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        if (n->res[p] && n->pass->ports[p].dir == TYN_INOUT) {
-            starts = starts || g->phys[n->res[p] - 1].started;
-            g->phys[n->res[p] - 1].started = false;
+        const uint32_t id = graph_port(n, p, 1 << TYN_INOUT);
+        if (id) {
+            starts = starts || g->phys[id - 1].started;
+            g->phys[id - 1].started = false;
         }
     }
     return starts;
@@ -324,8 +321,9 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     }
     // Scratch starts undefined: forget its layout, keep its dependencies.
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        if (n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH) {
-            g->phys[n->res[p] - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        const uint32_t id = graph_port(n, p, 1 << TYN_SCRATCH);
+        if (id) {
+            g->phys[id - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
         }
     }
     forget_overwritten(g, n);
@@ -339,9 +337,9 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     }
 
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        tyn_port_dir dir = n->pass->ports[p].dir;
-        if (n->res[p] && (dir == TYN_OUT || dir == TYN_INOUT)) {
-            g->phys[n->res[p] - 1].content = r.result == TYN_OK ? tyn_hash_u64(n->hash, p + 1) : 0;
+        const uint32_t id = graph_port(n, p, DIR_WRITTEN);
+        if (id) {
+            g->phys[id - 1].content = r.result == TYN_OK ? tyn_hash_u64(n->hash, p + 1) : 0;
         }
     }
     run->hash = r.result == TYN_OK ? n->hash : 0;

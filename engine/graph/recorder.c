@@ -208,9 +208,8 @@ void recorder_enter(tyn_recorder *r)
     VkPipelineStageFlags2 stages = 0;
     VkAccessFlags2 access = 0;
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        const tyn_port_dir dir = n->pass->ports[p].dir;
-        const uint32_t index = n->res[p] - 1;
-        if (!n->res[p] || (dir != TYN_OUT && dir != TYN_SCRATCH) || !r->g->phys[index].shared) {
+        const uint32_t index = graph_port(n, p, DIR_MADE) - 1;
+        if (index == UINT32_MAX || !r->g->phys[index].shared) {
             continue;
         }
         tyn_track *own = track_of(r, index);

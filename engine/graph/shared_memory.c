@@ -20,10 +20,8 @@ static bool *find_followers(const tyn_graph *g)
     for (uint32_t i = 0; follows && i < n; i++) {
         const node *reader = &g->nodes[i];
         for (uint32_t p = 0; p < reader->pass->num_ports; p++) {
-            const tyn_port_dir dir = reader->pass->ports[p].dir;
-            const bool read = reader->res[p] && (dir == TYN_IN || dir == TYN_INOUT);
-            const uint32_t writer =
-                read ? g->resources[reader->res[p] - 1].writers[reader->versions[p]] : 0;
+            const uint32_t id = graph_port(reader, p, DIR_READ);
+            const uint32_t writer = id ? g->resources[id - 1].writers[reader->versions[p]] : 0;
             if (writer) {
                 follows[i * n + writer - 1] = true;
                 for (uint32_t k = 0; k < writer - 1; k++) {
@@ -108,8 +106,7 @@ static bool is_needed(const tyn_graph *g, uint32_t index)
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
         for (uint32_t p = 0; n->needed && p < n->pass->num_ports; p++) {
-            const tyn_port_dir dir = n->pass->ports[p].dir;
-            if (n->res[p] == index + 1 && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+            if (graph_port(n, p, DIR_MADE) == index + 1) {
                 return true;
             }
         }
@@ -148,10 +145,10 @@ void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint6
     const node *n = &g->nodes[index];
     *bytes = *shared = 0;
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        const tyn_port_dir dir = n->pass->ports[p].dir;
-        if (n->res[p] && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
-            *bytes += g->phys[n->res[p] - 1].bytes;
-            *shared += graph_shared_bytes(g, n->res[p] - 1);
+        const uint32_t id = graph_port(n, p, DIR_MADE);
+        if (id) {
+            *bytes += g->phys[id - 1].bytes;
+            *shared += graph_shared_bytes(g, id - 1);
         }
     }
 }
@@ -169,10 +166,8 @@ static void list_items(const tyn_graph *g, bool placed, sharing *s)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         for (uint32_t p = 0; p < g->nodes[i].pass->num_ports; p++) {
-            const tyn_port_dir dir = g->nodes[i].pass->ports[p].dir;
-            const uint32_t id = g->nodes[i].res[p];
-            if (id && g->phys[id - 1].shared && is_placed(&g->phys[id - 1]) == placed &&
-                (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+            const uint32_t id = graph_port(&g->nodes[i], p, DIR_MADE);
+            if (id && g->phys[id - 1].shared && is_placed(&g->phys[id - 1]) == placed) {
                 s->indices[s->list.count] = id - 1;
                 describe(g, id - 1, i, &s->list.items[s->list.count++]);
             }

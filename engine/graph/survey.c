@@ -28,10 +28,7 @@ void graph_cull(tyn_graph *g)
     for (uint32_t i = g->num_nodes; i-- > 0;) {
         const node *n = &g->nodes[i];
         for (uint32_t p = 0; n->needed && p < n->pass->num_ports; p++) {
-            tyn_port_dir dir = n->pass->ports[p].dir;
-            if (dir == TYN_IN || dir == TYN_INOUT) {
-                need_writers(g, n->res[p], n->versions[p]);
-            }
+            need_writers(g, graph_port(n, p, DIR_READ), n->versions[p]);
         }
     }
 }
