@@ -18,6 +18,17 @@ static inline bool tyn_given(const tyn_log *log, const char *function, const cha
     }
     return true;
 }
+// False, with a line in the log, if a host's struct is older than the library: `macro` makes it.
+static inline bool tyn_sized(const tyn_log *log, const char *function, size_t given, size_t size,
+                             const char *macro)
+{
+    if (given < size) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: struct_size is %zu; use the %s() macro", function,
+                      given, macro);
+    }
+    return given >= size;
+}
+
 // The pointers that the function around it requires: if (!TYN_GIVEN(log, path, data)) ...
 #define TYN_GIVEN(log, ...)                                                                        \
     tyn_given(log, __func__, #__VA_ARGS__, (const void *const[]){__VA_ARGS__},                     \

@@ -13,13 +13,9 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
     if (out) {
         *out = NULL;
     }
-    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out)) {
-        return TYN_ERR_PARAMS;
-    }
-    if (params->struct_size < sizeof *params) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "tyn_context_create: struct_size is %zu; use the tyn_context_params() macro",
-                      params->struct_size);
+    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out) ||
+        !tyn_sized(&dev->log, __func__, params->struct_size, sizeof *params,
+                   "tyn_context_params")) {
         return TYN_ERR_PARAMS;
     }
     const tyn_method *method = tyn_method_find(params->method);

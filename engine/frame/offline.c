@@ -40,13 +40,9 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
     if (out) {
         *out = NULL;
     }
-    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out)) {
-        return TYN_ERR_PARAMS;
-    }
-    if (params->struct_size < sizeof *params) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "tyn_offline_create: struct_size is %zu; use the tyn_offline_params() macro",
-                      params->struct_size);
+    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out) ||
+        !tyn_sized(&dev->log, __func__, params->struct_size, sizeof *params,
+                   "tyn_offline_params")) {
         return TYN_ERR_PARAMS;
     }
     if (!dev->queue) {

@@ -1,6 +1,7 @@
 // surface_tables.c -- builds the tables by which triangles are drawn.
 #include "frame/surface_tables.h"
 #include "frame/alias_table.h"
+#include "scene/matrix.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/surfaces/surface_table_args.h"
 #include <math.h>
@@ -16,9 +17,9 @@ static double triangle_area(const tyn_surfaces *s, const tyn_surface_triangle *t
                       (double)s->vertices[t->vertices[0]].position[a];
         }
     }
-    double n[3] = {e[0][1] * e[1][2] - e[0][2] * e[1][1], e[0][2] * e[1][0] - e[0][0] * e[1][2],
-                   e[0][0] * e[1][1] - e[0][1] * e[1][0]};
-    return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    double n[3];
+    vec_cross(n, e[0], e[1]);
+    return 0.5 * sqrt(vec_dot(n, n));
 }
 
 static double triangle_weight(const tyn_surfaces *s, uint32_t index, tyn_surface_table_kind kind)

@@ -202,21 +202,19 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
     return TYN_OK;
 }
 
+// Once for the same surfaces.
+static tyn_result make_table(const tyn_surface_data *data, const tyn_surfaces *surfaces,
+                             tyn_surface_table_kind kind, bool *made, void **table, size_t *size)
+{
+    *made = *made || (data->hash && tyn_surface_table_build(surfaces, kind, table, size));
+    return *made || !data->hash ? TYN_OK : TYN_ERR_MEMORY;
+}
+
 tyn_result tyn_surface_data_tables(tyn_surface_data *data, const tyn_surfaces *surfaces, bool areas)
 {
-    if (data->hash && !data->has_emitters) {
-        if (!tyn_surface_table_build(surfaces, TYN_SURFACE_EMITTERS, &data->emitters,
-                                     &data->emitters_size)) {
-            return TYN_ERR_MEMORY;
-        }
-        data->has_emitters = true;
-    }
-    if (data->hash && areas && !data->has_areas) {
-        if (!tyn_surface_table_build(surfaces, TYN_SURFACE_AREAS, &data->areas,
-                                     &data->areas_size)) {
-            return TYN_ERR_MEMORY;
-        }
-        data->has_areas = true;
-    }
-    return TYN_OK;
+    const tyn_result result = make_table(data, surfaces, TYN_SURFACE_EMITTERS, &data->has_emitters,
+                                         &data->emitters, &data->emitters_size);
+    return result || !areas ? result
+                            : make_table(data, surfaces, TYN_SURFACE_AREAS, &data->has_areas,
+                                         &data->areas, &data->areas_size);
 }

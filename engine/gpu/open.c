@@ -327,13 +327,8 @@ tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **ou
     if (out) {
         *out = NULL;
     }
-    if (!TYN_GIVEN(log, params, out)) {
-        return TYN_ERR_PARAMS;
-    }
-    if (params->struct_size < sizeof *params) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "tyn_device_open: struct_size is %zu; use the tyn_device_open_params() macro",
-                      params->struct_size);
+    if (!TYN_GIVEN(log, params, out) ||
+        !tyn_sized(log, __func__, params->struct_size, sizeof *params, "tyn_device_open_params")) {
         return TYN_ERR_PARAMS;
     }
     tyn_device *dev = calloc(1, sizeof *dev);

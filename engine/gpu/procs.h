@@ -34,7 +34,6 @@
     X(AllocateMemory)                                                                              \
     X(FreeMemory)                                                                                  \
     X(MapMemory)                                                                                   \
-    X(InvalidateMappedMemoryRanges)                                                                \
     X(CreateBuffer)                                                                                \
     X(DestroyBuffer)                                                                               \
     X(CreateBufferView)                                                                            \

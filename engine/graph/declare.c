@@ -108,13 +108,21 @@ tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, cons
                        .image = *image});
 }
 
+// Can a buffer from outside be bound?
+static bool check_size(tyn_graph *g, const char *name, uint64_t bytes)
+{
+    const uint32_t most = g->dev->properties.limits.maxStorageBufferRange;
+    if (bytes > most) {
+        graph_fail(g, TYN_ERR_UNSUPPORTED, "'%s' takes %.1f MiB; the device binds at most %.1f MiB",
+                   name, (double)bytes / (1 << 20), (double)most / (1 << 20));
+    }
+    return bytes <= most;
+}
+
 tyn_ref tyn_graph_upload_buffer(tyn_graph *g, const char *name, const void *data, size_t size,
                                 uint64_t hash)
 {
-    if (size > g->dev->properties.limits.maxStorageBufferRange) {
-        graph_fail(g, TYN_ERR_UNSUPPORTED, "'%s' takes %.1f MiB; the device binds at most %.1f MiB",
-                   name, (double)size / (1 << 20),
-                   (double)g->dev->properties.limits.maxStorageBufferRange / (1 << 20));
+    if (!check_size(g, name, size)) {
         return (tyn_ref){0};
     }
     if (!hash) {
@@ -162,14 +170,10 @@ tyn_ref tyn_graph_history_image(tyn_graph *g, const char *name, tyn_dim dim, VkF
 
 tyn_ref tyn_graph_history_buffer(tyn_graph *g, const char *name, uint64_t bytes, uint64_t key)
 {
-    if (bytes > g->dev->properties.limits.maxStorageBufferRange) {
-        graph_fail(g, TYN_ERR_UNSUPPORTED, "'%s' takes %.1f MiB; the device binds at most %.1f MiB",
-                   name, (double)bytes / (1 << 20),
-                   (double)g->dev->properties.limits.maxStorageBufferRange / (1 << 20));
-        return (tyn_ref){0};
-    }
-    return tyn_graph_history_image(g, name, TYN_BUFFER, VK_FORMAT_UNDEFINED,
-                                   (tyn_extent){(uint32_t)bytes, 1, 1}, key);
+    return check_size(g, name, bytes)
+               ? tyn_graph_history_image(g, name, TYN_BUFFER, VK_FORMAT_UNDEFINED,
+                                         (tyn_extent){(uint32_t)bytes, 1, 1}, key)
+               : (tyn_ref){0};
 }
 
 void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref)

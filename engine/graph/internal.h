@@ -354,6 +354,7 @@ uint64_t graph_resource_bytes(const resource *r); // of its texels, without padd
 extern const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS];
 int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels
 
+tyn_access graph_transfer(const resource *r, bool write);
 VkImageMemoryBarrier2 graph_image_barrier(const resource *r, VkImage image, const tyn_barrier *b);
 void graph_memory_barrier(const tyn_graph *g, VkCommandBuffer cmd, const tyn_barrier *b);
 // Records a barrier for one access outside any node (uploads, readback, host images).

@@ -39,7 +39,7 @@ void tyn_graph_destroy(tyn_graph **graph)
 
 // ---- uploads and first contents ---------------------------------------------------------------
 
-static tyn_access transfer(const resource *r, bool write)
+tyn_access graph_transfer(const resource *r, bool write)
 {
     return (tyn_access){VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                         write ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
@@ -61,7 +61,7 @@ static void record_upload(tyn_recorder *rec, uint32_t index)
     const resource *r = &g->resources[index];
     phys *p = &g->phys[index];
     const tyn_procs *vk = &g->dev->vk;
-    recorder_access(rec, index, transfer(r, true));
+    recorder_access(rec, index, graph_transfer(r, true));
     if (r->fill) {
         VkBufferImageCopy copy = whole_image(r);
         vk->CmdCopyBufferToImage(rec->cmd, p->staging.buffer, p->image,
@@ -84,7 +84,7 @@ static void record_fill(tyn_recorder *rec, uint32_t index, uint32_t word)
     tyn_graph *g = rec->g;
     const resource *r = &g->resources[index];
     phys *p = &g->phys[index];
-    recorder_access(rec, index, transfer(r, true));
+    recorder_access(rec, index, graph_transfer(r, true));
     if (r->dim == TYN_BUFFER) {
         g->dev->vk.CmdFillBuffer(rec->cmd, p->buffer, 0, VK_WHOLE_SIZE, word);
     } else {
@@ -369,7 +369,7 @@ static void record_readbacks(tyn_recorder *rec)
         if (!g->outputs[i].readback || !p->readback.buffer || (p->read && p->read == p->content)) {
             continue;
         }
-        recorder_access(rec, index, transfer(r, false));
+        recorder_access(rec, index, graph_transfer(r, false));
         if (r->dim == TYN_BUFFER) {
             g->dev->vk.CmdCopyBuffer(rec->cmd, p->buffer, p->readback.buffer, 1,
                                      &(VkBufferCopy){0, 0, p->bytes});

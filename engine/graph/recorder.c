@@ -596,13 +596,6 @@ void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t p
 
 // ---- transfers --------------------------------------------------------------------------------
 
-static const tyn_access transfer_write = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                          VK_ACCESS_2_TRANSFER_WRITE_BIT, false, true,
-                                          VK_IMAGE_LAYOUT_UNDEFINED};
-static const tyn_access transfer_read = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                         VK_ACCESS_2_TRANSFER_READ_BIT, true, false,
-                                         VK_IMAGE_LAYOUT_UNDEFINED};
-
 // Surveys or synchronises; true if the command itself is to be recorded.
 static bool begin_transfer(tyn_recorder *r, uint8_t port, bool source, const char *what)
 {
@@ -617,9 +610,9 @@ static bool begin_transfer(tyn_recorder *r, uint8_t port, bool source, const cha
     if (r->mode == RECORD_PIPELINES || r->mode == RECORD_SETS) {
         return false;
     }
-    tyn_access access = source ? transfer_read : transfer_write;
+    tyn_access access = graph_transfer(&r->g->resources[res - 1], !source);
     if (r->g->resources[res - 1].dim != TYN_BUFFER) {
-        access.layout = VK_IMAGE_LAYOUT_GENERAL;
+        access.layout = VK_IMAGE_LAYOUT_GENERAL; // the node may use it otherwise next
     }
     synchronise(r, &(touch){res - 1, access}, 1);
     if (r->mode == RECORD_PLAN) {

@@ -7,3 +7,5 @@
 // must be empty; after a fault it is empty again.
 tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, const char *file,
                           const char *environment, const tyn_moment *moment, const tyn_log *log);
+
+bool tyn_is_gltf(const char *path); // by its name

@@ -140,6 +140,18 @@ static tyn_result read_sparse(const gltf_data *data, const accessor *a, put_fn p
     return r;
 }
 
+// All elements, then those that are replaced.
+static tyn_result read_elements(const gltf_data *data, const accessor *a, put_fn put, void *user)
+{
+    elements from;
+    TYN_TRY(find_elements(data, a->json, a->count,
+                          (uint64_t)a->components * component_size(a->type), &from));
+    for (uint32_t i = 0; from.bytes && i < a->count; i++) {
+        put(user, i, from.bytes + i * from.stride);
+    }
+    return read_sparse(data, a, put, user);
+}
+
 typedef struct float_target {
     const accessor *a;
     float *values;
@@ -169,12 +181,8 @@ tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t
                                 uint32_t most, gltf_floats *out)
 {
     accessor a;
-    elements from;
     *out = (gltf_floats){0};
-    tyn_result r = find_accessor(data, at, &a);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(find_accessor(data, at, &a));
     if (a.components < least || a.components > most || a.type == UINT) {
         if (most == 1) {
             return tyn_json_fault(data->doc, at,
@@ -185,19 +193,12 @@ tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t
                               "its accessor must be of type VEC%u%s, of floats, bytes or shorts",
                               least, most > least ? " or VEC4" : "");
     }
-    r = find_elements(data, a.json, a.count, (uint64_t)a.components * component_size(a.type),
-                      &from);
-    out->values = r ? NULL : calloc((size_t)a.count * a.components, sizeof(float));
-    if (!out->values) {
-        return r ? r : tyn_json_fault(data->doc, at, "no memory for %u elements", a.count);
-    }
-    out->count = a.count;
-    out->components = a.components;
+    *out =
+        (gltf_floats){calloc((size_t)a.count * a.components, sizeof(float)), a.count, a.components};
     float_target target = {&a, out->values};
-    for (uint32_t i = 0; from.bytes && i < a.count; i++) {
-        put_floats(&target, i, from.bytes + i * from.stride);
-    }
-    r = read_sparse(data, &a, put_floats, &target);
+    tyn_result r = out->values
+                       ? read_elements(data, &a, put_floats, &target)
+                       : tyn_json_fault(data->doc, at, "no memory for %u elements", a.count);
     r = r ? r : check_finite(data, at, out);
     if (r) {
         free(out->values);
@@ -221,25 +222,16 @@ tyn_result tyn_gltf_read_indices(const gltf_data *data, const cJSON *at, uint32_
                                  uint32_t **out, uint32_t *count)
 {
     accessor a;
-    elements from;
-    tyn_result r = find_accessor(data, at, &a);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(find_accessor(data, at, &a));
     if (a.components != 1 || (a.type != UBYTE && a.type != USHORT && a.type != UINT)) {
         return tyn_json_fault(
             data->doc, at,
             "its accessor must be of type SCALAR, of unsigned bytes, shorts or ints");
     }
-    r = find_elements(data, a.json, a.count, component_size(a.type), &from);
-    index_target target = {a.type, r ? NULL : calloc(a.count, sizeof(uint32_t))};
-    if (!target.indices) {
-        return r ? r : tyn_json_fault(data->doc, at, "no memory for %u indices", a.count);
-    }
-    for (uint32_t i = 0; from.bytes && i < a.count; i++) {
-        put_index(&target, i, from.bytes + i * from.stride);
-    }
-    r = read_sparse(data, &a, put_index, &target);
+    index_target target = {a.type, calloc(a.count, sizeof(uint32_t))};
+    tyn_result r = target.indices
+                       ? read_elements(data, &a, put_index, &target)
+                       : tyn_json_fault(data->doc, at, "no memory for %u indices", a.count);
     for (uint32_t i = 0; !r && i < a.count; i++) {
         if (target.indices[i] >= limit) {
             r = tyn_json_fault(data->doc, at, "index %u is %u: there are %u vertices", i,

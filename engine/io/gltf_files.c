@@ -6,6 +6,12 @@
 #include <string.h>
 #include <strings.h>
 
+bool tyn_is_gltf(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0);
+}
+
 static void tell_uris(const json_doc *doc, const cJSON *json, tyn_file_found found, void *user)
 {
     for (const cJSON *item = json ? json->child : NULL; item; item = item->next) {
@@ -28,8 +34,7 @@ tyn_result tyn_scene_files(const char *path, const uint32_t *frame, tyn_file_fou
         return TYN_ERR_PARAMS;
     }
     found(user, path);
-    const char *dot = strrchr(path, '.');
-    if (!dot || (strcasecmp(dot, ".gltf") != 0 && strcasecmp(dot, ".glb") != 0)) {
+    if (!tyn_is_gltf(path)) {
         return TYN_OK;
     }
     void *bytes = NULL;

@@ -157,7 +157,7 @@ static tyn_result read_diffuse_texture(const json_doc *doc, const cJSON *json, c
 static tyn_result read_metallic(gltf_materials *m, int64_t index, const cJSON *json, double *out)
 {
     const json_doc *doc = m->textures.data->doc;
-    double mean[4];
+    double mean;
     cJSON *pbr, *metal, *unlit, *gloss;
     TYN_TRY(tyn_json_extension(doc, json, SPECULAR_GLOSSINESS, &gloss));
     TYN_TRY(tyn_json_extension(doc, json, "KHR_materials_unlit", &unlit));
@@ -171,8 +171,8 @@ static tyn_result read_metallic(gltf_materials *m, int64_t index, const cJSON *j
     TYN_TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", out));
     TYN_TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
     if (metal && *out > 0) { // metalness is in the blue channel, linear
-        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
-        *out *= mean[2];
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, 2, &mean));
+        *out *= mean;
         lack(m, index, LACK_METAL_TEXTURE);
     }
     return TYN_OK;

@@ -209,24 +209,18 @@ tyn_result tyn_gltf_texture_read(gltf_textures *t, const cJSON *info, tyn_textur
     return read_texture(t, texture_index(info), out);
 }
 
-tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4])
+tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, int channel, double *mean)
 {
     tyn_texture texture;
     TYN_TRY(read_texture(t, texture_index(info), &texture));
     const size_t texels = (size_t)texture.size[0] * texture.size[1];
-    uint64_t histogram[4][256] = {{0}};
+    uint64_t histogram[256] = {0};
     for (size_t i = 0; i < texels; i++) {
-        for (int c = 0; c < 4; c++) {
-            histogram[c][texture.texels[4 * i + (size_t)c]]++;
-        }
+        histogram[texture.texels[4 * i + (size_t)channel]]++;
     }
-    for (int c = 0; c < 4; c++) {
-        mean[c] = 0;
-        for (int v = 0; v < 256; v++) {
-            const double x = v / 255.0;
-            const double light = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-            mean[c] += (srgb && c < 3 ? light : x) * (double)histogram[c][v] / (double)texels;
-        }
+    *mean = 0;
+    for (int v = 0; v < 256; v++) {
+        *mean += v / 255.0 * (double)histogram[v] / (double)texels;
     }
     free(texture.texels);
     return TYN_OK;

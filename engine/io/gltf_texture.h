@@ -20,5 +20,5 @@ tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *i
 // The texture itself, which the caller gives back.
 tyn_result tyn_gltf_texture_read(gltf_textures *t, const cJSON *info, tyn_texture *out);
 
-// Means of a texture's four channels, 0 to 1; colours are decoded from sRGB first if `srgb`.
-tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4]);
+// Mean of a channel as it is stored, 0 to 1.
+tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, int channel, double *mean);

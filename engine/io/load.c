@@ -9,12 +9,6 @@
 #include "io/volume.h"
 #include "base/given.h"
 
-static bool is_gltf(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0);
-}
-
 static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *environment,
                             const tyn_moment *moment, const tyn_log *log)
 {
@@ -64,7 +58,7 @@ static tyn_result load(tyn_scene *scene, const char *path, const char *environme
                       moment->seconds);
         return TYN_ERR_PARAMS;
     }
-    if (is_gltf(path)) {
+    if (tyn_is_gltf(path)) {
         return load_gltf(scene, path, environment, moment, log);
     }
     if (tyn_is_volume(path)) {

@@ -4,6 +4,7 @@
 // radiance stops falling; its excess over the ring around it is a sun if it is compact and holds a
 // fair share of all light. What the reduced map accepts is measured again on the map itself.
 #include "scene/env_suns.h"
+#include "scene/matrix.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -80,11 +81,6 @@ static void centre_of(const latlong *m, const row_geometry *row, uint32_t x, dou
     d[2] = -row->sin_polar * m->cos_azimuth[x];
 }
 
-static double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double dot_sun(const double a[3], const tyn_map_sun *sun)
 {
     return a[0] * sun->direction[0] + a[1] * sun->direction[1] + a[2] * sun->direction[2];
@@ -153,7 +149,7 @@ static void visit_cap(const latlong *m, const double centre[3], double radius, v
             uint32_t x = (first + i) % m->width;
             double d[3];
             centre_of(m, &row, x, d);
-            double cosine = dot3(d, centre);
+            double cosine = vec_dot(d, centre);
             if (cosine >= cos_radius) {
                 visit(user, m, &row, x, (size_t)y * m->width + x, d, cosine);
             }
@@ -301,7 +297,7 @@ static bool find_spot(const latlong *m, double least, int rounds, spot *s)
             return false;
         }
         excess_sum sum = sum_excess(m, s->centre, s->radius, cos(s->radius), s->around);
-        double length = sqrt(dot3(sum.vector, sum.vector));
+        double length = sqrt(vec_dot(sum.vector, sum.vector));
         if (length <= 0) {
             return false;
         }
@@ -325,7 +321,7 @@ static bool measure_sun(const latlong *m, const spot *s, tyn_map_sun *sun)
     sun->cos_radius = (float)(0.5 * (sum.inside + sum.outside));
     sum = sum_excess(m, centre, s->radius, sun->cos_radius, around);
     double weight = luminance(sum.power);
-    double cosine = weight > 0 ? dot3(sum.vector, centre) / weight : 0;
+    double cosine = weight > 0 ? vec_dot(sum.vector, centre) / weight : 0;
     memcpy(sun->irradiance, sum.power, sizeof sun->irradiance);
     sun->mean_cosine = (float)fmin(cosine, 1);
     return cosine >= min_mean_cosine;

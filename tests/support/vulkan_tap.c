@@ -195,8 +195,6 @@ TAP(BindBufferMemory, (VkDevice d, VkBuffer b, VkDeviceMemory m, VkDeviceSize o)
     (void)0, (void)0)
 TAP(BindImageMemory, (VkDevice d, VkImage b, VkDeviceMemory m, VkDeviceSize o), (d, b, m, o),
     (void)0, (void)0)
-TAP(InvalidateMappedMemoryRanges, (VkDevice d, uint32_t n, const VkMappedMemoryRange *r), (d, n, r),
-    (void)0, (void)0)
 TAP_MAKES(CreateDescriptorPool,
           (VkDevice d, const VkDescriptorPoolCreateInfo *i, const VkAllocationCallbacks *a,
            VkDescriptorPool *out),
