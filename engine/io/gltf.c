@@ -1,5 +1,6 @@
 // gltf.c -- from a glTF file to a scene: checks, nodes and buffers, then a walk over the nodes.
 #include "io/gltf.h"
+#include "base/bytes.h"
 #include "io/gltf_json.h"
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +16,6 @@
 #include "scene/surfaces.h"
 
 // ---- the container --------------------------------------------------------------------------
-
-static uint32_t load_u32(const uint8_t *p)
-{
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
 
 // What is often found in place of a file that was to be downloaded.
 static tyn_result check_kind(const uint8_t *bytes, size_t size, const char *file,
@@ -52,7 +48,7 @@ static tyn_result find_binary(gltf_container *c, const uint8_t *bytes, uint64_t 
     if (at == total) {
         return TYN_OK;
     }
-    const uint64_t chunk = at + 8 <= total ? load_u32(bytes + at) : UINT64_MAX;
+    const uint64_t chunk = at + 8 <= total ? tyn_load(bytes + at, 4) : UINT64_MAX;
     if (chunk > total - at - 8 || memcmp(bytes + at + 4, "BIN", 4) != 0) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "%s: binary glTF: the %llu bytes behind its JSON are no chunk of type BIN",
@@ -77,11 +73,11 @@ tyn_result tyn_gltf_open(gltf_container *out, const uint8_t *bytes, size_t size,
     if (!out->glb) {
         return TYN_OK;
     }
-    if (size < 20 || load_u32(bytes + 4) != 2) {
+    if (size < 20 || tyn_load(bytes + 4, 4) != 2) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: not a binary glTF of version 2", file);
         return TYN_ERR_PARAMS;
     }
-    uint64_t total = load_u32(bytes + 8), chunk = load_u32(bytes + 12);
+    uint64_t total = tyn_load(bytes + 8, 4), chunk = tyn_load(bytes + 12, 4);
     if (total > size || 20 + chunk > total || memcmp(bytes + 16, "JSON", 4) != 0) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "%s: binary glTF of %llu bytes with %llu bytes of JSON, but the file has %zu",

@@ -1,5 +1,6 @@
 // gltf_accessor.c -- values of accessors as floats or indices.
 #include "io/gltf_accessor.h"
+#include "base/bytes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,11 +61,8 @@ static uint32_t component_size(int64_t type)
 
 static double load(const uint8_t *p, int64_t type)
 {
-    uint32_t bits = 0;
+    const uint32_t bits = (uint32_t)tyn_load(p, (int)component_size(type));
     float value;
-    for (uint32_t i = component_size(type); i-- > 0;) { // little-endian
-        bits = bits << 8 | p[i];
-    }
     memcpy(&value, &bits, sizeof value);
     return type == BYTE    ? (int8_t)bits
            : type == SHORT ? (int16_t)bits

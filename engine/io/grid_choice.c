@@ -1,12 +1,12 @@
 // grid_choice.c -- which grid of a file is meant: by name, and by what names mean.
 #include "io/volume.h"
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 // As OpenVDB's samples, Houdini, Blender and EmberGen call them. The first that fits counts.
 static const struct {
-    const char *word; // what a name begins with, lower case; "=": is
+    const char *word; // what a name begins with, in either case; "=": is
     tyn_grid_role role;
 } words[] = {
     {"density", TYN_ROLE_DENSITY},    {"=dens", TYN_ROLE_DENSITY},
@@ -33,16 +33,10 @@ static const struct {
 
 tyn_grid_role tyn_grid_role_of(const char *name)
 {
-    char lower[32];
-    size_t i = 0;
-    for (; name[i] && i + 1 < sizeof lower; i++) {
-        lower[i] = (char)tolower((unsigned char)name[i]);
-    }
-    lower[i] = '\0';
     for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
         const char *word = words[k].word;
-        if (word[0] == '=' ? strcmp(lower, word + 1) == 0
-                           : strncmp(lower, word, strlen(word)) == 0) {
+        if (word[0] == '=' ? strcasecmp(name, word + 1) == 0
+                           : strncasecmp(name, word, strlen(word)) == 0) {
             return words[k].role;
         }
     }

@@ -15,6 +15,7 @@
 #define PNANOVDB_C
 #define PNANOVDB_BUF_BOUNDS_CHECK
 #include <nanovdb/PNanoVDB.h>
+#include "base/bytes.h"
 #include "base/half.h"
 #include "io/volume.h"
 
@@ -46,15 +47,6 @@ typedef struct contents {
     uint32_t count;
 } contents;
 
-static uint64_t load(const uint8_t *p, int bytes)
-{
-    uint64_t v = 0;
-    for (int i = 0; i < bytes; i++) {
-        v |= (uint64_t)p[i] << (8 * i);
-    }
-    return v;
-}
-
 // Files and grids start with "NanoVDB0" to "NanoVDB2"; the ABI is the major version 32, in the
 // upper 11 bits of the version.
 static bool known(const uint8_t *magic, uint64_t version)
@@ -71,12 +63,12 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
             p == in->begin ? "wrong magic number" : "damaged behind a segment");
         return 0;
     }
-    if (!known(p, load(p + 8, 4))) {
+    if (!known(p, tyn_load(p + 8, 4))) {
         LOG(in, "%s: NanoVDB version %llu: only version %d can be read", in->file,
-            (unsigned long long)(load(p + 8, 4) >> 21), PNANOVDB_MAJOR_VERSION_NUMBER);
+            (unsigned long long)(tyn_load(p + 8, 4) >> 21), PNANOVDB_MAJOR_VERSION_NUMBER);
         return 0;
     }
-    uint32_t count = (uint32_t)load(p + 12, 2);
+    uint32_t count = (uint32_t)tyn_load(p + 12, 2);
     entry *grown = realloc(list->grids, (list->count + count + 1) * sizeof *grown);
     if (!grown) {
         LOG(in, "%s: no memory to read it", in->file);
@@ -86,7 +78,7 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
     uint64_t at = HEADER_BYTES;
     for (uint32_t i = 0; i < count; i++) {
         const uint8_t *meta = p + at;
-        uint64_t name_size = size - at < META_BYTES ? 0 : load(meta + 136, 4);
+        uint64_t name_size = size - at < META_BYTES ? 0 : tyn_load(meta + 136, 4);
         if (size - at < META_BYTES || name_size < 1 || name_size > size - at - META_BYTES ||
             meta[META_BYTES + name_size - 1] != 0) {
             LOG(in, "%s: cut short or damaged in the metadata of its grids", in->file);
@@ -95,11 +87,11 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
         grown[list->count + i] = (entry){
             .name = (const char *)meta + META_BYTES,
             .meta = meta,
-            .grid_size = load(meta, 8),
-            .file_size = load(meta + 8, 8),
-            .type = (uint32_t)load(meta + 32, 4),
-            .grid_class = (uint32_t)load(meta + 36, 4),
-            .codec = (uint16_t)load(meta + 168, 2),
+            .grid_size = tyn_load(meta, 8),
+            .file_size = tyn_load(meta + 8, 8),
+            .type = (uint32_t)tyn_load(meta + 32, 4),
+            .grid_class = (uint32_t)tyn_load(meta + 36, 4),
+            .codec = (uint16_t)tyn_load(meta + 168, 2),
         };
         at += META_BYTES + name_size;
     }
@@ -156,7 +148,7 @@ static const entry *choose(const contents *list, tyn_grid_job *job, const input 
 
 static bool unzip(uint8_t *out, const entry *e)
 {
-    uint64_t packed = e->file_size < 8 ? 0 : load(e->data, 8);
+    uint64_t packed = e->file_size < 8 ? 0 : tyn_load(e->data, 8);
     uLongf size = (uLongf)e->grid_size;
     return packed > 0 && packed <= e->file_size - 8 &&
            uncompress(out, &size, e->data + 8, (uLong)packed) == Z_OK && size == e->grid_size;
@@ -171,7 +163,7 @@ static bool unblosc(uint8_t *out, const entry *e)
         uint64_t left = e->file_size - at, chunk = e->grid_size - done, packed;
         size_t unpacked = 0;
         chunk = chunk < (1ull << 30) ? chunk : 1ull << 30;
-        if (left < 8 || (packed = load(e->data + at, 8)) > left - 8 ||
+        if (left < 8 || (packed = tyn_load(e->data + at, 8)) > left - 8 ||
             blosc_cbuffer_validate(e->data + at + 8, (size_t)packed, &unpacked) != 0 ||
             unpacked != chunk ||
             blosc_decompress_ctx(e->data + at + 8, out + done, (size_t)chunk, 1) != (int)chunk) {
@@ -577,7 +569,7 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in, doub
         "unknown",    "level set", "fog volume",   "staggered", "point index",
         "point data", "topology",  "voxel volume", "index grid"};
     const uint8_t *meta = e->meta;
-    *g = (tyn_volume_grid){.active_voxels = load(meta + 24, 8)};
+    *g = (tyn_volume_grid){.active_voxels = tyn_load(meta + 24, 8)};
     snprintf(g->name, sizeof g->name, "%s", e->name);
     const bool level_set = e->grid_class == PNANOVDB_GRID_CLASS_LEVEL_SET;
     const entry plain = {.type = e->type};
@@ -585,11 +577,11 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in, doub
     snprintf(g->grid_class, sizeof g->grid_class, "%s",
              e->grid_class < PNANOVDB_GRID_CLASS_END ? classes[e->grid_class] : "unknown");
     for (int a = 0; a < 3; a++) {
-        const uint64_t bits = load(meta + 112 + 8 * a, 8);
+        const uint64_t bits = tyn_load(meta + 112 + 8 * a, 8);
         double edge;
         memcpy(&edge, &bits, sizeof edge);
-        g->lo[a] = (int32_t)load(meta + 88 + 4 * a, 4);
-        g->hi[a] = (int32_t)load(meta + 100 + 4 * a, 4);
+        g->lo[a] = (int32_t)tyn_load(meta + 88 + 4 * a, 4);
+        g->hi[a] = (int32_t)tyn_load(meta + 100 + 4 * a, 4);
         g->index_to_world[5 * a] = edge;
     }
     g->index_to_world[15] = 1;

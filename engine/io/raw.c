@@ -2,13 +2,9 @@
 #include "io/raw.h"
 #include "base/fault.h"
 #include <string.h>
+#include "base/bytes.h"
 #include "base/half.h"
 #include "io/volume.h"
-
-static uint32_t load_u32(const uint8_t *p)
-{
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
 
 tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
                         const int64_t size[3], uint32_t channels, tyn_raw_type type,
@@ -34,11 +30,11 @@ tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
         uint32_t word;
         switch (type) {
         case TYN_RAW_F32:
-            word = load_u32(p);
+            word = (uint32_t)tyn_load(p, 4);
             memcpy(&volume->data[i], &word, 4);
             break;
         case TYN_RAW_F16:
-            volume->data[i] = tyn_half_to_float((uint16_t)(p[0] | p[1] << 8));
+            volume->data[i] = tyn_half_to_float((uint16_t)tyn_load(p, 2));
             break;
         case TYN_RAW_U8:
             volume->data[i] = (float)p[0] / 255.0f;

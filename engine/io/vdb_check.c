@@ -7,6 +7,7 @@
 // of tree/RootNode.h, InternalNode.h and LeafNode.h. Trees of other types than are listed here are not read, and not
 // walked.
 #include "io/vdb_check.h"
+#include "base/bytes.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,23 +85,16 @@ static const uint8_t *take(walk *w, uint64_t count)
     return bytes;
 }
 
-static uint32_t read_u32(const uint8_t *bytes)
-{
-    uint32_t value;
-    memcpy(&value, bytes, sizeof value);
-    return value;
-}
-
 static uint32_t take_u32(walk *w)
 {
     const uint8_t *b = take(w, 4);
-    return b ? read_u32(b) : 0;
+    return b ? (uint32_t)tyn_load(b, 4) : 0;
 }
 
 static int64_t take_i64(walk *w)
 {
     const uint8_t *b = take(w, 8);
-    return b ? (int64_t)((uint64_t)read_u32(b + 4) << 32 | read_u32(b)) : 0;
+    return b ? (int64_t)tyn_load(b, 8) : 0;
 }
 
 // A text with its length before it. `text` holds as much of it as fits.
@@ -130,7 +124,7 @@ static uint32_t count_bits(const uint8_t *mask, uint32_t bytes)
 // at most (where it is less, the library says so).
 static void check_blosc(walk *w, const uint8_t *block, uint64_t size, uint64_t out)
 {
-    if (size < BLOSC_HEADER || read_u32(block + 12) != size || read_u32(block + 4) > out) {
+    if (size < BLOSC_HEADER || tyn_load(block + 12, 4) != size || tyn_load(block + 4, 4) > out) {
         fail(w, "is damaged: a compressed block has other sizes than its header", "");
     }
 }
