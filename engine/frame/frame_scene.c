@@ -13,11 +13,6 @@ enum { RESAMPLED_MAX = 192, RESAMPLED_HOMOGENEOUS = 96 };
 
 // ---- small linear algebra, in double ----------------------------------------------------------
 
-static double length3(const double a[3])
-{
-    return sqrt(vec_dot(a, a));
-}
-
 // A rigid frame: axes of M in the world, and its origin.
 typedef struct rigid {
     double axes[3][3], origin[3];
@@ -56,7 +51,7 @@ static bool frame_of_shape(const tyn_shape *shape, rigid *m, double extent[3], b
     double c[4][3], turned[3];
     columns(shape->to_world, c);
     for (int a = 0; a < 3; a++) {
-        extent[a] = length3(c[a]);
+        extent[a] = vec_length(c[a]);
         for (int b = 0; b < a; b++) {
             if (fabs(vec_dot(c[a], c[b])) > 1e-5 * extent[a] * extent[b]) {
                 return false;
@@ -143,13 +138,13 @@ static void choose_size(const tyn_scene *scene, const double extent[3], uint32_t
         double c[4][3];
         columns(scene->shapes[i].to_world, c);
         for (int a = 0; volume >= 0 && a < 3; a++) {
-            h = fmin(h, length3(c[a]) / scene->volumes[volume].size[a]);
+            h = fmin(h, vec_length(c[a]) / scene->volumes[volume].size[a]);
         }
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
         const uint32_t slots[] = {m->emission_grid, m->radiance_grid, m->albedo_grid};
         for (int k = 0; k < 9; k++) {
             const uint32_t slot = slots[k / 3];
-            h = slot ? fmin(h, length3(c[k % 3]) / scene->color_grids[slot - 1].size[k % 3]) : h;
+            h = slot ? fmin(h, vec_length(c[k % 3]) / scene->color_grids[slot - 1].size[k % 3]) : h;
         }
     }
     h = fmax(h, longest / RESAMPLED_MAX);

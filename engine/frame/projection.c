@@ -9,11 +9,6 @@
 // Smaller than this, against what it is made of, is what rounding of floats leaves of 0.
 static const double TINY = 1e-6, ASKEW = 1e-4;
 
-static double norm(const double a[3])
-{
-    return sqrt(vec_dot(a, a));
-}
-
 static bool finite_floats(const float *m, int count)
 {
     bool finite = true;
@@ -30,7 +25,7 @@ static bool meet(const double a[4], const double b[4], const double c[4], double
     vec_cross(bc, b, c);
     vec_cross(ca, c, a);
     vec_cross(ab, a, b);
-    const double det = vec_dot(a, bc), size = norm(a) * norm(b) * norm(c);
+    const double det = vec_dot(a, bc), size = vec_length(a) * vec_length(b) * vec_length(c);
     for (int i = 0; i < 3; i++) {
         p[i] = -(a[3] * bc[i] + b[3] * ca[i] + c[3] * ab[i]) / det;
     }
@@ -64,8 +59,8 @@ static clip_rows rows_of(const tyn_frame *frame)
 static tyn_result set_picture(tyn_frame_projection *out, const double x[3], const double y[3],
                               const double middle[3], const tyn_log *log)
 {
-    out->half[0] = norm(x);
-    out->half[1] = norm(y);
+    out->half[0] = vec_length(x);
+    out->half[1] = vec_length(y);
     for (int a = 0; a < 3; a++) {
         out->right[a] = x[a] / out->half[0];
         out->up[a] = -y[a] / out->half[1];
@@ -87,7 +82,7 @@ static tyn_result from_perspective(tyn_frame_projection *out, const clip_rows *r
     vec_cross(x, r->y, r->w);
     vec_cross(y, r->w, r->x);
     vec_cross(middle, r->x, r->y);
-    const double length = norm(r->w), det = vec_dot(r->w, middle);
+    const double length = vec_length(r->w), det = vec_dot(r->w, middle);
     if (!meet(r->x, r->y, r->w, out->origin)) {
         FAULT("view_to_clip x world_to_view is singular: its rows x, y and w must meet in one eye");
     }
@@ -107,8 +102,8 @@ static tyn_result from_orthographic(tyn_frame_projection *out, const clip_rows *
     double x[3], y[3], across[3];
     const double w = r->w[3], none[3] = {0, 0, 0};
     vec_cross(across, r->x, r->y);
-    const double length = norm(across);
-    if (w == 0 || !(length > TINY * norm(r->x) * norm(r->y)) ||
+    const double length = vec_length(across);
+    if (w == 0 || !(length > TINY * vec_length(r->x) * vec_length(r->y)) ||
         !meet(r->x, r->y, r->view_z, out->origin)) {
         FAULT("view_to_clip x world_to_view is singular: parallel rays need rows x, y and view z "
               "that are independent, and "
@@ -133,7 +128,8 @@ static tyn_result from_orthographic(tyn_frame_projection *out, const clip_rows *
 static tyn_result set_depth(tyn_frame_projection *out, const clip_rows *r, bool wanted,
                             const tyn_log *log)
 {
-    const double w = out->orthographic ? r->w[3] : norm(r->w), along = vec_dot(r->z, out->forward);
+    const double w = out->orthographic ? r->w[3] : vec_length(r->w),
+                 along = vec_dot(r->z, out->forward);
     const double at_origin = vec_dot(r->z, out->origin) + r->z[3];
     double aside = 0;
     for (int a = 0; a < 3; a++) {
@@ -143,7 +139,7 @@ static tyn_result set_depth(tyn_frame_projection *out, const clip_rows *r, bool 
     out->depth[1] = (float)(at_origin / w);
     out->depth[2] = out->orthographic ? 0 : -1;
     out->depth[3] = out->orthographic ? 1 : 0;
-    if (wanted && aside > ASKEW * norm(r->z)) {
+    if (wanted && aside > ASKEW * vec_length(r->z)) {
         FAULT("view_to_clip: with `depth` clip z must change along the view alone; an oblique near "
               "plane is not understood");
     }
@@ -163,8 +159,8 @@ static tyn_result from_matrices(tyn_frame_projection *out, const tyn_frame *fram
               v[3], v[7], v[11], v[15]);
     }
     const clip_rows rows = rows_of(frame);
-    const double most = fmax(norm(rows.x), norm(rows.y));
-    const bool parallel = norm(rows.w) <= TINY * most;
+    const double most = fmax(vec_length(rows.x), vec_length(rows.y));
+    const bool parallel = vec_length(rows.w) <= TINY * most;
     const tyn_result result =
         parallel ? from_orthographic(out, &rows, log) : from_perspective(out, &rows, log);
     return result == TYN_OK ? set_depth(out, &rows, frame->depth != NULL, log) : result;

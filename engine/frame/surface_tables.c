@@ -19,7 +19,7 @@ static double triangle_area(const tyn_surfaces *s, const tyn_surface_triangle *t
     }
     double n[3];
     vec_cross(n, e[0], e[1]);
-    return 0.5 * sqrt(vec_dot(n, n));
+    return 0.5 * vec_length(n);
 }
 
 static double triangle_weight(const tyn_surfaces *s, uint32_t index, tyn_surface_table_kind kind)

@@ -2,7 +2,6 @@
 #include "gpu/compiler.h"
 #include "base/fault.h"
 #include "base/given.h"
-#include <ctype.h>
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -203,21 +202,6 @@ static int rank(const candidate *c)
     }
 }
 
-static bool contains_ignoring_case(const char *text, const char *part)
-{
-    size_t n = strlen(part);
-    for (; *text; text++) {
-        size_t i = 0;
-        while (i < n && text[i] && tolower((uint8_t)text[i]) == tolower((uint8_t)part[i])) {
-            i++;
-        }
-        if (i == n) {
-            return true;
-        }
-    }
-    return n == 0;
-}
-
 enum { MAX_DEVICES = 16 };
 
 static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
@@ -239,9 +223,8 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
     int best = -1;
     for (uint32_t i = 0; i < count; i++) {
         candidate c = inspect(&dev->vk, devices[i]);
-        bool wanted =
-            !select ||
-            (by_index ? i == index : contains_ignoring_case(c.properties.deviceName, select));
+        bool wanted = !select ||
+                      (by_index ? i == index : strcasestr(c.properties.deviceName, select) != NULL);
         int score = (c.missing ? 0 : 10) + rank(&c);
         if (wanted && score > best) {
             best = score;

@@ -469,6 +469,16 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     return g->status;
 }
 
+void graph_store_param(const tyn_param *p, void *params, double value)
+{
+    void *field = (uint8_t *)params + p->offset;
+    if (p->type == TYN_PARAM_FLOAT) {
+        *(float *)field = (float)value;
+    } else {
+        *(int32_t *)field = (int32_t)value;
+    }
+}
+
 void tyn_pass_defaults(const tyn_pass_desc *pass, void *params)
 {
     if (!pass || !params) {
@@ -476,12 +486,6 @@ void tyn_pass_defaults(const tyn_pass_desc *pass, void *params)
     }
     memset(params, 0, pass->params_size);
     for (uint32_t i = 0; i < pass->num_params; i++) {
-        const tyn_param *p = &pass->params[i];
-        void *field = (uint8_t *)params + p->offset;
-        if (p->type == TYN_PARAM_FLOAT) {
-            *(float *)field = (float)p->def;
-        } else {
-            *(int32_t *)field = (int32_t)p->def;
-        }
+        graph_store_param(&pass->params[i], params, pass->params[i].def);
     }
 }

@@ -19,6 +19,9 @@ void tyn_graph_budget(tyn_graph *g, uint64_t bytes);
 
 // ---- declare (beside what methods call: tyndall/extend/graph.h) -------------------------------
 
+// Writes a value where a pass has a parameter.
+void graph_store_param(const tyn_param *p, void *params, double value);
+
 // Starts a new declaration; the compiled state is kept until the next compile.
 void tyn_graph_begin(tyn_graph *g);
 

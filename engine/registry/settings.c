@@ -1,5 +1,6 @@
 // settings.c -- values of pass parameters, by "pass.param".
 #include "registry/registry.h"
+#include "graph/graph.h"
 #include "base/given.h"
 #include <tyndall/extend/hash.h>
 #include <errno.h>
@@ -292,14 +293,8 @@ void tyn_settings_params(const tyn_settings *settings, const tyn_pass_desc *pass
     tyn_pass_defaults(pass, params);
     for (uint32_t i = 0; params && settings && i < settings->count; i++) {
         const entry *e = &settings->entries[i];
-        if (e->pass != pass) {
-            continue;
-        }
-        void *field = (uint8_t *)params + e->param->offset;
-        if (e->param->type == TYN_PARAM_FLOAT) {
-            *(float *)field = (float)e->value;
-        } else {
-            *(int32_t *)field = (int32_t)e->value;
+        if (e->pass == pass) {
+            graph_store_param(e->param, params, e->value);
         }
     }
 }

@@ -2,8 +2,6 @@
 #include <tyndall/scene.h>
 #include "scene/matrix.h"
 
-#define PI 3.14159265358979323846
-
 static void set_frame(tyn_camera *camera, const double right[3], const double up[3],
                       const double back[3])
 {
@@ -41,7 +39,7 @@ void tyn_camera_frame_scene(tyn_camera *camera, const tyn_scene *scene)
     if (!camera || !scene) {
         return;
     }
-    const double yfov = 40.0 * PI / 180.0, elevation = 15.0 * PI / 180.0;
+    const double yfov = 40.0 * M_PI / 180.0, elevation = 15.0 * M_PI / 180.0;
     float lo[3], hi[3], at[3], from[3];
     double radius2 = 0.0;
     tyn_scene_bounds(scene, lo, hi);

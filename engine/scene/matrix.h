@@ -51,6 +51,11 @@ static inline double vec_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline double vec_length(const double a[3])
+{
+    return sqrt(vec_dot(a, a));
+}
+
 static inline void vec_cross(double out[3], const double a[3], const double b[3])
 {
     double r[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};

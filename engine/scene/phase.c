@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 static const double g_min = 1e-3; // below it there is no lobe worth splitting off
 
 // ---- parameters -----------------------------------------------------------------------------------
@@ -107,7 +105,7 @@ enum { POINTS = 8 };
 static void gauss_legendre(double x[POINTS], double w[POINTS])
 {
     for (int i = 0; i < POINTS; i++) {
-        double z = cos(PI * (i + 0.75) / (POINTS + 0.5)), slope = 1;
+        double z = cos(M_PI * (i + 0.75) / (POINTS + 0.5)), slope = 1;
         for (int newton = 0; newton < 8; newton++) {
             double p = 1, before = 0;
             for (int l = 0; l < POINTS; l++) {
@@ -135,7 +133,7 @@ static double fraction_within(double g, double theta)
 // with -h' = 6 x (1 - x), x = theta / theta_1 - 1/2; bisection, as it grows with theta_1.
 static double find_theta_1(double g, const double x[POINTS], const double w[POINTS])
 {
-    double lo = 0, hi = PI / 1.5;
+    double lo = 0, hi = M_PI / 1.5;
     for (int i = 0; i < 50; i++) {
         double theta_1 = 0.5 * (lo + hi), sum = 0;
         for (int panel = 0; panel < 4; panel++) {

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 static const double tolerance = 0.01; // of an integral of 1
 
 // ---- lobes ------------------------------------------------------------------------------------
@@ -32,7 +30,7 @@ static double lobe_value(const tyn_phase_lobe *lobe, double away)
     const double g = (double)lobe->g, a = fabs(g), alpha = (double)lobe->alpha;
     const double mu = 1 - away, s2 = (1 - a) * (1 - a) + 2 * a * (g >= 0 ? away : 2 - away);
     const double rest = (1 + alpha * mu * mu) / (1 + alpha * (1 + 2 * g * g) / 3);
-    return (double)lobe->weight * (1 - g * g) / (4 * PI * s2 * sqrt(s2)) * rest;
+    return (double)lobe->weight * (1 - g * g) / (4 * M_PI * s2 * sqrt(s2)) * rest;
 }
 
 static tyn_result check_lobes(const tyn_phase_form *form, const char *of, const tyn_log *log)
@@ -97,7 +95,7 @@ static void fill_moments(const tyn_phase_form *form, double values[TYN_PHASE_NOD
         double p = 1, d = 0, sum = 0;
         for (uint32_t l = 0; l < form->count; l++) {
             const double sign = away > 1 && l % 2 ? -1 : 1;
-            sum += sign * (2 * l + 1) / (4 * PI) * form->moments[l] * p;
+            sum += sign * (2 * l + 1) / (4 * M_PI) * form->moments[l] * p;
             d = (l * d - (2 * l + 1) * y * p) / (l + 1);
             p += d;
         }
@@ -109,7 +107,7 @@ static void fill_moments(const tyn_phase_form *form, double values[TYN_PHASE_NOD
 
 static tyn_result check_angles(const tyn_phase_form *form, const char *of, const tyn_log *log)
 {
-    const double degree = PI / 180;
+    const double degree = M_PI / 180;
     const uint32_t last = form->count - 1;
     if (form->count < 2) {
         FAULT("%s.angles: %u of them: at least 2, from 0 to 180 degrees", of, form->count);
@@ -129,7 +127,7 @@ static tyn_result check_angles(const tyn_phase_form *form, const char *of, const
     if (!(form->angles[0] == 0)) {
         FAULT("%s.angles[0] = %g: must be 0", of, form->angles[0] / degree);
     }
-    if (!(fabs(form->angles[last] - PI) < 1e-6)) {
+    if (!(fabs(form->angles[last] - M_PI) < 1e-6)) {
         FAULT("%s.angles[%u] = %g: the last one must be 180", of, last,
               form->angles[last] / degree);
     }
@@ -158,7 +156,7 @@ static double integral_of_angles(const tyn_phase_form *form)
         const double slope = (form->values[i + 1] - form->values[i]) / (b - a);
         sum += form->values[i] * cos(a) - form->values[i + 1] * cos(b) + slope * (sin(b) - sin(a));
     }
-    return 2 * PI * sum;
+    return 2 * M_PI * sum;
 }
 
 // ---- tables -----------------------------------------------------------------------------------
@@ -178,7 +176,7 @@ static tyn_result fill_table(const tyn_phase_form *form, const char *of, tyn_pha
         // A series is rounded; what is below 0 by more is no phase function.
         if (!(values[k] >= -1e-6 * fmax(fabs(values[0]), 1))) {
             FAULT("%s: it is %g per steradian at %.4g degrees: must be >= 0 everywhere", of,
-                  values[k], tyn_phase_node_angle(k) * 180 / PI);
+                  values[k], tyn_phase_node_angle(k) * 180 / M_PI);
         }
         table->values[k] = (float)fmax(values[k], 0);
     }

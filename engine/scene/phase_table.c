@@ -6,7 +6,6 @@
 #include <tyndall/extend/hash.h>
 #include <math.h>
 
-#define PI 3.14159265358979323846
 enum { POINTS = 3, INTERVALS = TYN_PHASE_NODES - 1 };
 
 static const double gauss_x[POINTS] = {0.11270166537925831, 0.5, 0.88729833462074169};
@@ -40,7 +39,7 @@ static void points_of(const tyn_phase_table *t, uint32_t interval, double y[POIN
     const double a = (double)t->values[interval], b = (double)t->values[interval + 1];
     for (int i = 0; i < POINTS; i++) {
         y[i] = from + gauss_x[i] * (to - from);
-        held[i] = 2 * PI * gauss_w[i] * (to - from) * (a + gauss_x[i] * (b - a));
+        held[i] = 2 * M_PI * gauss_w[i] * (to - from) * (a + gauss_x[i] * (b - a));
     }
 }
 
@@ -48,7 +47,7 @@ static void points_of(const tyn_phase_table *t, uint32_t interval, double y[POIN
 static double held_below(const tyn_phase_table *t, uint32_t node)
 {
     const double width = tyn_phase_node_away(node) - tyn_phase_node_away(node - 1);
-    return PI * width * ((double)t->values[node - 1] + (double)t->values[node]);
+    return M_PI * width * ((double)t->values[node - 1] + (double)t->values[node]);
 }
 
 double tyn_phase_table_integral(const tyn_phase_table *t)
@@ -86,7 +85,7 @@ static double window(double theta_1, double y)
 
 double tyn_phase_table_window(const tyn_phase_table *t, double f)
 {
-    double lo = 0, hi = PI / 1.5;
+    double lo = 0, hi = M_PI / 1.5;
     for (int i = 0; i < 40; i++) { // the lobe grows with theta_1
         const double theta_1 = 0.5 * (lo + hi);
         double sum = 0, y[POINTS], held[POINTS];
@@ -151,7 +150,7 @@ static double delta_of(const double chi[5])
 // g of a Henyey-Greenstein lobe that is as high at its peak: (1 + g) / (1 - g)^2 = 4 pi p.
 static double lobe_as_high_as(double p)
 {
-    const double q = 4 * PI * p;
+    const double q = 4 * M_PI * p;
     return q > 1 ? fmin(1 - (sqrt(1 + 8 * q) - 1) / (2 * q), 0.9999) : 0;
 }
 
