@@ -16,40 +16,19 @@ enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
 // ---- bytes ------------------------------------------------------------------------------------
 
-uint64_t tyn_gltf_view_size(const gltf_data *data, int64_t view)
+const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, size_t *size)
 {
-    return (uint64_t)tyn_json_whole(data->model->lists[GLTF_BUFFER_VIEWS].items[view], "byteLength",
-                                    0);
+    const gltf_view *v = &data->model->views[view];
+    *size = (size_t)v->length;
+    return data->model->buffers[v->buffer].data + v->offset;
 }
 
-const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,
-                                   uint64_t size)
+// NULL: all are zero.
+static const uint8_t *bytes_of(const gltf_data *data, const gltf_elements *elements)
 {
-    const cJSON *v = data->model->lists[GLTF_BUFFER_VIEWS].items[view];
-    const int64_t buffer = tyn_json_whole(v, "buffer", 0);
-    const gltf_buffer *bytes = &data->model->buffers[buffer];
-    const uint64_t start = (uint64_t)tyn_json_whole(v, "byteOffset", 0) + offset;
-    return start <= bytes->size && size <= bytes->size - start ? bytes->data + start : NULL;
-}
-
-// `count` elements of `size` bytes, `stride` apart, of the view that `at` names. False after a fault.
-typedef struct elements {
-    const uint8_t *bytes; // NULL: all are zero
-    uint64_t stride;
-} elements;
-static tyn_result find_elements(const gltf_data *data, const cJSON *at, uint64_t count,
-                                uint64_t size, elements *out)
-{
-    const int64_t view = tyn_json_whole(at, "bufferView", -1);
-    *out = (elements){NULL, size};
-    if (view < 0) {
-        return TYN_OK;
-    }
-    out->stride = (uint64_t)tyn_json_whole(data->model->lists[GLTF_BUFFER_VIEWS].items[view],
-                                           "byteStride", (int64_t)size);
-    out->bytes = tyn_gltf_view_bytes(data, view, (uint64_t)tyn_json_whole(at, "byteOffset", 0),
-                                     out->stride * (count - 1) + size);
-    return out->bytes ? TYN_OK : tyn_json_fault(data->doc, at, "reaches beyond its buffer");
+    size_t size;
+    return elements->view < 0 ? NULL
+                              : tyn_gltf_view_bytes(data, elements->view, &size) + elements->offset;
 }
 
 // ---- components -------------------------------------------------------------------------------
@@ -79,79 +58,46 @@ static float load_float(const uint8_t *p, int64_t type, bool normalized)
 
 // ---- accessors --------------------------------------------------------------------------------
 
-typedef struct accessor {
-    const cJSON *json;
-    int64_t type; // of its components
-    uint32_t count, components;
-    bool normalized;
-} accessor;
-
-static tyn_result find_accessor(const gltf_data *data, const cJSON *at, accessor *a)
+static tyn_result find_accessor(const gltf_data *data, const cJSON *at, const gltf_accessor **out)
 {
-    static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    const cJSON *json = data->model->lists[GLTF_ACCESSORS].items[(int64_t)at->valuedouble];
-    const int64_t count = tyn_json_whole(json, "count", 0);
-    *a = (accessor){.json = json,
-                    .type = tyn_json_whole(json, "componentType", FLOAT),
-                    .normalized = cJSON_IsTrue(tyn_json_member(json, "normalized"))};
-    for (uint32_t i = 0; i < 4; i++) {
-        if (strcmp(types[i], tyn_json_member(json, "type")->valuestring) == 0) {
-            a->components = i + 1;
-        }
-    }
-    const bool zeros = !tyn_json_member(json, "bufferView");
+    const int64_t index = (int64_t)at->valuedouble;
+    const gltf_accessor *a = *out = &data->model->accessors[index];
+    const bool zeros = a->elements.view < 0;
     const int64_t most = zeros ? MAX_ZEROS : MAX_ELEMENTS;
-    if (count > most) {
-        return tyn_json_fault(data->doc, tyn_json_member(json, "count"),
-                              "at most %lld elements%s are read", (long long)most,
-                              zeros ? " without a bufferView" : "");
+    return a->count <= most
+               ? TYN_OK
+               : tyn_json_fault(
+                     data->doc,
+                     tyn_json_member(data->model->lists[GLTF_ACCESSORS].items[index], "count"),
+                     "at most %lld elements%s are read", (long long)most,
+                     zeros ? " without a bufferView" : "");
+}
+
+// All elements, then those that are replaced, in order; `at` names the accessor.
+typedef void (*put_fn)(void *user, uint32_t index, const uint8_t *bytes);
+static tyn_result read_elements(const gltf_data *data, const cJSON *at, const gltf_accessor *a,
+                                put_fn put, void *user)
+{
+    const cJSON *json = data->model->lists[GLTF_ACCESSORS].items[(int64_t)at->valuedouble];
+    const uint8_t *from = bytes_of(data, &a->elements);
+    for (int64_t i = 0; from && i < a->count; i++) {
+        put(user, (uint32_t)i, from + i * a->elements.stride);
     }
-    a->count = (uint32_t)count;
+    for (int64_t i = 0; i < a->num_sparse; i++) {
+        const uint32_t index =
+            (uint32_t)load(bytes_of(data, &a->indices) + i * a->indices.stride, a->index_type);
+        if (index >= a->count) {
+            return tyn_json_fault(data->doc, tyn_json_member(json, "sparse"),
+                                  "index %lld is %u: the accessor has %u elements", (long long)i,
+                                  index, (uint32_t)a->count);
+        }
+        put(user, index, bytes_of(data, &a->values) + i * a->values.stride);
+    }
     return TYN_OK;
 }
 
-// Where element i is replaced: for every sparse index, in order, calls put.
-typedef void (*put_fn)(void *user, uint32_t index, const uint8_t *bytes);
-static tyn_result read_sparse(const gltf_data *data, const accessor *a, put_fn put, void *user)
-{
-    const cJSON *sparse = tyn_json_member(a->json, "sparse");
-    if (!sparse) {
-        return TYN_OK;
-    }
-    const cJSON *indices = tyn_json_member(sparse, "indices");
-    const int64_t count = tyn_json_whole(sparse, "count", 0),
-                  type = tyn_json_whole(indices, "componentType", UINT);
-    elements at, values;
-    tyn_result r = find_elements(data, indices, (uint64_t)count, component_size(type), &at);
-    r = r ? r
-          : find_elements(data, tyn_json_member(sparse, "values"), (uint64_t)count,
-                          (uint64_t)a->components * component_size(a->type), &values);
-    for (int64_t i = 0; !r && i < count; i++) {
-        const uint32_t index = (uint32_t)load(at.bytes + (uint64_t)i * at.stride, type);
-        if (index >= a->count) {
-            return tyn_json_fault(data->doc, sparse,
-                                  "index %lld is %u: the accessor has %u elements", (long long)i,
-                                  index, a->count);
-        }
-        put(user, index, values.bytes + (uint64_t)i * values.stride);
-    }
-    return r;
-}
-
-// All elements, then those that are replaced.
-static tyn_result read_elements(const gltf_data *data, const accessor *a, put_fn put, void *user)
-{
-    elements from;
-    TYN_TRY(find_elements(data, a->json, a->count,
-                          (uint64_t)a->components * component_size(a->type), &from));
-    for (uint32_t i = 0; from.bytes && i < a->count; i++) {
-        put(user, i, from.bytes + i * from.stride);
-    }
-    return read_sparse(data, a, put, user);
-}
-
 typedef struct float_target {
-    const accessor *a;
+    const gltf_accessor *a;
     float *values;
 } float_target;
 
@@ -178,10 +124,10 @@ static tyn_result check_finite(const gltf_data *data, const cJSON *at, const glt
 tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t least,
                                 uint32_t most, gltf_floats *out)
 {
-    accessor a;
+    const gltf_accessor *a;
     *out = (gltf_floats){0};
     TYN_TRY(find_accessor(data, at, &a));
-    if (a.components < least || a.components > most || a.type == UINT) {
+    if (a->components < least || a->components > most || a->type == UINT) {
         if (most == 1) {
             return tyn_json_fault(data->doc, at,
                                   "its accessor must be of type SCALAR, of floats, "
@@ -191,12 +137,12 @@ tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t
                               "its accessor must be of type VEC%u%s, of floats, bytes or shorts",
                               least, most > least ? " or VEC4" : "");
     }
-    *out =
-        (gltf_floats){calloc((size_t)a.count * a.components, sizeof(float)), a.count, a.components};
-    float_target target = {&a, out->values};
-    tyn_result r = out->values
-                       ? read_elements(data, &a, put_floats, &target)
-                       : tyn_json_fault(data->doc, at, "no memory for %u elements", a.count);
+    *out = (gltf_floats){calloc((size_t)a->count * a->components, sizeof(float)),
+                         (uint32_t)a->count, a->components};
+    float_target target = {a, out->values};
+    tyn_result r = out->values ? read_elements(data, at, a, put_floats, &target)
+                               : tyn_json_fault(data->doc, at, "no memory for %u elements",
+                                                (uint32_t)a->count);
     r = r ? r : check_finite(data, at, out);
     if (r) {
         free(out->values);
@@ -219,18 +165,18 @@ static void put_index(void *user, uint32_t index, const uint8_t *bytes)
 tyn_result tyn_gltf_read_indices(const gltf_data *data, const cJSON *at, uint32_t limit,
                                  uint32_t **out, uint32_t *count)
 {
-    accessor a;
+    const gltf_accessor *a;
     TYN_TRY(find_accessor(data, at, &a));
-    if (a.components != 1 || (a.type != UBYTE && a.type != USHORT && a.type != UINT)) {
+    if (a->components != 1 || (a->type != UBYTE && a->type != USHORT && a->type != UINT)) {
         return tyn_json_fault(
             data->doc, at,
             "its accessor must be of type SCALAR, of unsigned bytes, shorts or ints");
     }
-    index_target target = {a.type, calloc(a.count, sizeof(uint32_t))};
-    tyn_result r = target.indices
-                       ? read_elements(data, &a, put_index, &target)
-                       : tyn_json_fault(data->doc, at, "no memory for %u indices", a.count);
-    for (uint32_t i = 0; !r && i < a.count; i++) {
+    index_target target = {a->type, calloc((uint32_t)a->count, sizeof(uint32_t))};
+    tyn_result r = target.indices ? read_elements(data, at, a, put_index, &target)
+                                  : tyn_json_fault(data->doc, at, "no memory for %u indices",
+                                                   (uint32_t)a->count);
+    for (uint32_t i = 0; !r && i < a->count; i++) {
         if (target.indices[i] >= limit) {
             r = tyn_json_fault(data->doc, at, "index %u is %u: there are %u vertices", i,
                                target.indices[i], limit);
@@ -241,6 +187,6 @@ tyn_result tyn_gltf_read_indices(const gltf_data *data, const cJSON *at, uint32_
         return r;
     }
     *out = target.indices;
-    *count = a.count;
+    *count = (uint32_t)a->count;
     return TYN_OK;
 }

@@ -7,10 +7,7 @@ typedef struct gltf_data {
     const gltf_model *model;
 } gltf_data;
 
-// Bytes [offset, offset + size) of a buffer view; NULL if it does not hold as many.
-const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,
-                                   uint64_t size);
-uint64_t tyn_gltf_view_size(const gltf_data *data, int64_t view);
+const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, size_t *size);
 
 // `at` is the member that names the accessor, for messages: "attributes.POSITION". Normalised integers
 // become 0 to 1 or -1 to 1, others keep their value; sparse values are put in. The accessor's type must be

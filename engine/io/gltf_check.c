@@ -10,7 +10,9 @@
 typedef struct checker {
     const json_doc *doc;
     bool glb;
-    const json_list *lists; // by gltf_kind
+    const json_list *lists; // the model's, by gltf_kind
+    gltf_model *model;
+    int64_t index; // of what is checked, in its list
 } checker;
 
 static tyn_result check_index(const checker *c, const cJSON *parent, const char *name, gltf_kind of)
@@ -59,7 +61,7 @@ static tyn_result check_buffer(const checker *c, const cJSON *buffer)
     if (!bytes) {
         return tyn_json_fault(c->doc, buffer, "byteLength is missing");
     }
-    if ((!uri || !*uri) && !(c->glb && buffer == c->lists[GLTF_BUFFERS].items[0])) {
+    if ((!uri || !*uri) && !(c->glb && c->index == 0)) {
         return tyn_json_fault(c->doc, buffer,
                               "uri is missing: only the first buffer of a .glb needs none");
     }
@@ -68,25 +70,24 @@ static tyn_result check_buffer(const checker *c, const cJSON *buffer)
 
 static tyn_result check_buffer_view(const checker *c, const cJSON *view)
 {
-    int64_t offset = 0, length = 0, total = 0, stride = 0, buffer = -1;
+    gltf_view *v = &c->model->views[c->index];
     const cJSON *index = tyn_json_member(view, "buffer");
     if (!index) {
         return tyn_json_fault(c->doc, view, "buffer is missing");
     }
-    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFERS].count, "buffers", &buffer));
-    TYN_TRY(tyn_json_integer(c->doc, view, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
-    TYN_TRY(
-        tyn_json_integer(c->doc, view, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes", &length));
-    TYN_TRY(tyn_json_integer(c->doc, view, "byteStride", 4, 252, "4 to 252 bytes", &stride));
-    TYN_TRY(tyn_json_integer(c->doc, c->lists[GLTF_BUFFERS].items[buffer], "byteLength", 1, MAX_INT,
-                             "", &total));
-    if (!length) {
+    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFERS].count, "buffers", &v->buffer));
+    TYN_TRY(tyn_json_integer(c->doc, view, "byteOffset", 0, MAX_INT, "an offset >= 0", &v->offset));
+    TYN_TRY(tyn_json_integer(c->doc, view, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes",
+                             &v->length));
+    TYN_TRY(tyn_json_integer(c->doc, view, "byteStride", 4, 252, "4 to 252 bytes", &v->stride));
+    const int64_t total = tyn_json_whole(c->lists[GLTF_BUFFERS].items[v->buffer], "byteLength", 0);
+    if (!v->length) {
         return tyn_json_fault(c->doc, view, "byteLength is missing");
     }
-    if (offset + length > total) {
+    if (v->offset + v->length > total) {
         return tyn_json_fault(c->doc, tyn_json_member(view, "byteLength"),
                               "reaches byte %lld, its buffer ends at %lld",
-                              (long long)(offset + length), (long long)total);
+                              (long long)(v->offset + v->length), (long long)total);
     }
     return TYN_OK;
 }
@@ -100,75 +101,78 @@ static int64_t component_bytes(int64_t type)
 }
 
 // `count` elements of `bytes` each, from byteOffset of `at` on, inside the view that `at` names.
-static tyn_result check_extent(const checker *c, const cJSON *at, int64_t count, int64_t bytes)
+static tyn_result check_extent(const checker *c, const cJSON *at, int64_t count, int64_t bytes,
+                               gltf_elements *out)
 {
     const cJSON *index = tyn_json_member(at, "bufferView");
-    int64_t view = 0, offset = 0, length = 0, stride = bytes;
+    *out = (gltf_elements){-1, 0, bytes};
     if (!index) {
         return TYN_OK;
     }
-    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFER_VIEWS].count, "bufferViews", &view));
-    TYN_TRY(tyn_json_integer(c->doc, at, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
-    const cJSON *v = c->lists[GLTF_BUFFER_VIEWS].items[view];
-    TYN_TRY(tyn_json_integer(c->doc, v, "byteLength", 1, MAX_INT, "", &length));
-    TYN_TRY(tyn_json_integer(c->doc, v, "byteStride", 4, 252, "4 to 252 bytes", &stride));
-    if (offset + stride * (count - 1) + bytes > length) {
-        return tyn_json_fault(c->doc, at, "reaches byte %lld, its bufferView ends at %lld",
-                              (long long)(offset + stride * (count - 1) + bytes),
-                              (long long)length);
-    }
-    return TYN_OK;
+    TYN_TRY(tyn_json_index(c->doc, index, c->lists[GLTF_BUFFER_VIEWS].count, "bufferViews",
+                           &out->view));
+    TYN_TRY(tyn_json_integer(c->doc, at, "byteOffset", 0, MAX_INT, "an offset >= 0", &out->offset));
+    const gltf_view *view = &c->model->views[out->view];
+    out->stride = view->stride ? view->stride : bytes;
+    const int64_t end = out->offset + out->stride * (count - 1) + bytes;
+    return end <= view->length
+               ? TYN_OK
+               : tyn_json_fault(c->doc, at, "reaches byte %lld, its bufferView ends at %lld",
+                                (long long)end, (long long)view->length);
 }
 
-static tyn_result check_sparse(const checker *c, const cJSON *accessor, int64_t bytes)
+static tyn_result check_sparse(const checker *c, const cJSON *accessor, int64_t bytes,
+                               gltf_accessor *a)
 {
     cJSON *sparse, *indices, *values;
-    int64_t count = 0, type = 0;
     TYN_TRY(tyn_json_object(c->doc, accessor, "sparse", &sparse));
     if (!sparse) {
         return TYN_OK;
     }
-    TYN_TRY(tyn_json_integer(c->doc, sparse, "count", 1, MAX_INT, "a count >= 1", &count));
+    TYN_TRY(tyn_json_integer(c->doc, sparse, "count", 1, MAX_INT, "a count >= 1", &a->num_sparse));
     TYN_TRY(tyn_json_object(c->doc, sparse, "indices", &indices));
     TYN_TRY(tyn_json_object(c->doc, sparse, "values", &values));
-    if (!count || !indices || !values || !tyn_json_member(indices, "bufferView") ||
+    if (!a->num_sparse || !indices || !values || !tyn_json_member(indices, "bufferView") ||
         !tyn_json_member(values, "bufferView")) {
         return tyn_json_fault(c->doc, sparse, "needs count, indices and values with bufferViews");
     }
     TYN_TRY(tyn_json_integer(c->doc, indices, "componentType", 5121, 5125, "5121, 5123 or 5125",
-                             &type));
-    if (type != 5121 && type != 5123 && type != 5125) {
+                             &a->index_type));
+    if (a->index_type != 5121 && a->index_type != 5123 && a->index_type != 5125) {
         return tyn_json_fault(c->doc, indices, "componentType must be 5121, 5123 or 5125");
     }
-    TYN_TRY(check_extent(c, indices, count, component_bytes(type)));
-    return check_extent(c, values, count, bytes);
+    TYN_TRY(check_extent(c, indices, a->num_sparse, component_bytes(a->index_type), &a->indices));
+    return check_extent(c, values, a->num_sparse, bytes, &a->values);
 }
 
 static tyn_result check_accessor(const checker *c, const cJSON *accessor)
 {
     static const struct {
         const char *name;
-        int columns, rows;
+        uint32_t columns, rows;
     } types[] = {{"SCALAR", 1, 1}, {"VEC2", 1, 2}, {"VEC3", 1, 3}, {"VEC4", 1, 4},
                  {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
-    int64_t count = 0, component = 0, bytes = 0;
+    gltf_accessor *a = &c->model->accessors[c->index];
+    int64_t bytes = 0;
     const char *type = "";
-    TYN_TRY(tyn_json_integer(c->doc, accessor, "count", 1, MAX_INT, "a count >= 1", &count));
+    TYN_TRY(tyn_json_integer(c->doc, accessor, "count", 1, MAX_INT, "a count >= 1", &a->count));
     TYN_TRY(tyn_json_integer(c->doc, accessor, "componentType", 5120, 5126, "5120 to 5126 but 5124",
-                             &component));
+                             &a->type));
     TYN_TRY(tyn_json_string(c->doc, accessor, "type", &type));
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         if (strcmp(type, types[i].name) == 0) {
-            int64_t column = types[i].rows * component_bytes(component);
+            int64_t column = types[i].rows * component_bytes(a->type);
             // Columns of matrices start at multiples of four bytes.
             bytes = types[i].columns == 1 ? column : types[i].columns * ((column + 3) / 4 * 4);
+            a->components = types[i].columns == 1 ? types[i].rows : 0;
         }
     }
-    if (!count || !bytes) {
+    if (!a->count || !bytes) {
         return tyn_json_fault(c->doc, accessor, "needs count, componentType and type");
     }
-    TYN_TRY(check_extent(c, accessor, count, bytes));
-    return check_sparse(c, accessor, bytes);
+    a->normalized = cJSON_IsTrue(tyn_json_member(accessor, "normalized"));
+    TYN_TRY(check_extent(c, accessor, a->count, bytes, &a->elements));
+    return check_sparse(c, accessor, bytes, a);
 }
 
 static tyn_result check_image(const checker *c, const cJSON *image)
@@ -336,9 +340,10 @@ static tyn_result (*const checks[GLTF_NUM_LISTS])(const checker *c, const cJSON 
     [GLTF_SCENES] = check_scene,       [GLTF_NODES] = check_node,
 };
 
-tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NUM_LISTS])
+tyn_result tyn_gltf_check(const json_doc *doc, bool glb, gltf_model *model)
 {
-    const checker c = {.doc = doc, .glb = glb, .lists = lists};
+    json_list *lists = model->lists;
+    checker c = {.doc = doc, .glb = glb, .lists = lists, .model = model};
     cJSON *lights;
     TYN_TRY(check_asset(&c));
     TYN_TRY(tyn_gltf_check_required(doc));
@@ -347,9 +352,14 @@ tyn_result tyn_gltf_check(const json_doc *doc, bool glb, json_list lists[GLTF_NU
         TYN_TRY(tyn_json_list(doc, k == GLTF_LIGHTS ? lights : doc->root, tyn_gltf_lists[k],
                               &lists[k]));
     }
+    model->views = calloc((size_t)lists[GLTF_BUFFER_VIEWS].count + 1, sizeof *model->views);
+    model->accessors = calloc((size_t)lists[GLTF_ACCESSORS].count + 1, sizeof *model->accessors);
+    if (!model->views || !model->accessors) {
+        return tyn_json_no_memory(doc, "accessors");
+    }
     for (int k = 0; k < GLTF_NUM_LISTS; k++) {
-        for (int64_t i = 0; i < lists[k].count; i++) {
-            TYN_TRY(checks[k](&c, lists[k].items[i]));
+        for (c.index = 0; c.index < lists[k].count; c.index++) {
+            TYN_TRY(checks[k](&c, lists[k].items[c.index]));
         }
     }
     return check_index(&c, doc->root, "scene", GLTF_SCENES);

@@ -1,5 +1,6 @@
 // gltf_model.c -- see gltf_model.h.
 #include "io/gltf_model.h"
+#include "io/gltf_check.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -150,7 +151,7 @@ tyn_result tyn_gltf_model_read(gltf_model *model, const json_doc *doc, const glt
 {
     const json_list *nodes = &model->lists[GLTF_NODES], *buffers = &model->lists[GLTF_BUFFERS];
     *model = (gltf_model){0};
-    TYN_TRY(tyn_gltf_check(doc, chunk != NULL, model->lists));
+    TYN_TRY(tyn_gltf_check(doc, chunk != NULL, model));
     model->nodes = calloc((size_t)nodes->count + 1, sizeof *model->nodes);
     model->buffers = calloc((size_t)buffers->count + 1, sizeof *model->buffers);
     if (!model->nodes || !model->buffers) {
@@ -176,6 +177,8 @@ void tyn_gltf_model_finish(gltf_model *model)
         free(model->lists[k].items);
     }
     free(model->buffers);
+    free(model->views);
+    free(model->accessors);
     free(model->nodes);
     *model = (gltf_model){0};
 }

@@ -1,6 +1,24 @@
 // gltf_model.h -- nodes and buffers of a glTF file.
 #pragma once
-#include "io/gltf_check.h"
+#include "io/json.h"
+
+// The lists of things that others name by their index. Those of KHR_lights_punctual are lights.
+typedef enum gltf_kind {
+    GLTF_BUFFERS,
+    GLTF_BUFFER_VIEWS,
+    GLTF_ACCESSORS,
+    GLTF_IMAGES,
+    GLTF_SAMPLERS,
+    GLTF_TEXTURES,
+    GLTF_MATERIALS,
+    GLTF_MESHES,
+    GLTF_CAMERAS,
+    GLTF_LIGHTS,
+    GLTF_SCENES,
+    GLTF_NODES,
+    GLTF_NUM_LISTS
+} gltf_kind;
+extern const char *const tyn_gltf_lists[GLTF_NUM_LISTS]; // what they are called
 
 typedef struct gltf_node {
     const cJSON *json;
@@ -18,10 +36,32 @@ typedef struct gltf_buffer {
     void *owned; // `data`, or NULL where that is the file's binary chunk
 } gltf_buffer;
 
+typedef struct gltf_view {
+    int64_t buffer, offset, length;
+    int64_t stride; // 0: elements lie side by side
+} gltf_view;
+
+// Elements in a view, `stride` bytes apart.
+typedef struct gltf_elements {
+    int64_t view; // -1: all are zero
+    int64_t offset, stride;
+} gltf_elements;
+
+typedef struct gltf_accessor {
+    gltf_elements elements;
+    int64_t count, type; // of its components, as in the file
+    uint32_t components; // 0: of a matrix
+    bool normalized;
+    int64_t num_sparse, index_type; // elements that are replaced
+    gltf_elements indices, values;
+} gltf_accessor;
+
 typedef struct gltf_model {
     json_list lists[GLTF_NUM_LISTS];
     gltf_node *nodes;     // of lists[GLTF_NODES]
     gltf_buffer *buffers; // of lists[GLTF_BUFFERS]
+    gltf_view *views;     // of lists[GLTF_BUFFER_VIEWS]
+    gltf_accessor *accessors;
 } gltf_model;
 
 // Checks the document first. `chunk`: the binary chunk of a .glb, which the model may point into; NULL: it is none.

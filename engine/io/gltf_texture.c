@@ -129,11 +129,9 @@ static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_text
 {
     const cJSON *uri = tyn_json_member(image, "uri"), *view = tyn_json_member(image, "bufferView");
     if (view) {
-        const int64_t index = (int64_t)view->valuedouble;
-        const uint64_t size = tyn_gltf_view_size(data, index);
-        const uint8_t *bytes = tyn_gltf_view_bytes(data, index, 0, size);
-        return bytes ? decode(data, image, bytes, size, out)
-                     : tyn_json_fault(data->doc, view, "reaches beyond its buffer");
+        size_t size;
+        const uint8_t *bytes = tyn_gltf_view_bytes(data, (int64_t)view->valuedouble, &size);
+        return decode(data, image, bytes, size, out);
     }
     if (strncmp(uri->valuestring, "data:", 5) != 0) {
         return read_file(data, uri, out, missing);
