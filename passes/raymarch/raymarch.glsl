@@ -173,7 +173,7 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u, 0.0);
+    state.shadow = march_shadows(0u, 0u, 0.0, 0u);
     return state;
 }
 
@@ -222,6 +222,19 @@ struct march_step {
     float s, ds, at; // beginning, length and centroid, m
     spectrum weight, weight_scaled;
 };
+
+// Is there a sun or a lamp that may shine on the step?
+bool march_any_light(march_shadows shadow, march_lamp kept[MARCH_LAMPS_KEPT])
+{
+    bool any = false;
+    for (uint n = 0u; n < raymarch_num_suns; n++) {
+        any = any || march_light_cell(shadow, n) != TYN_LIGHT_CELLS_DARK;
+    }
+    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+        any = any || march_light_cell(shadow, kept[n].grid.light.shadow) != TYN_LIGHT_CELLS_DARK;
+    }
+    return any || raymarch_num_lamps > MARCH_LAMPS_KEPT;
+}
 
 // Light of suns and lamps that the step scatters towards the eye.
 vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], march_lamps lamps,
@@ -372,10 +385,22 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 state.shadow.known = any ? state.shadow.known : 0u;
                 state.s += any ? 0.0 : ds;
                 state.next = full ? state.next : dense ? RAYMARCH_SHORT / most : args.step;
-                step.ds = full ? ds : 0.0;
-                found = full;
+                if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
+                    state.shadow.cells = full ? march_light_cells(origin, direction, state.s, ds) : state.shadow.cells;
+                    found = full && march_any_light(state.shadow, kept);
+                    // Where all is dark nothing need be looked for at the next step's beginning.
+                    state.shadow.lit = full && !found ? 0u : state.shadow.lit;
+                    state.shadow.known = full && !found ? ~0u : state.shadow.known;
+                    march_step here = march_through(m, full ? ds : 0.0, full, line, near.span, state);
+                    if (found) {
+                        step = here;
+                    }
+                } else {
+                    step.ds = full ? ds : 0.0;
+                    found = full;
+                }
             }
-            if (found) {
+            if (!raymarch_has(RAYMARCH_LIGHT_CELLS) && found) {
                 step = march_through(m, step.ds, true, line, near.span, state);
             }
             if (found && raymarch_num_suns + raymarch_num_lamps > 0u) {
