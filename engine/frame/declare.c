@@ -11,6 +11,7 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     tyn_graph_begin(ctx->graph);
     *tyn_graph_mode(ctx->graph) = (tyn_record_mode){.recompute = frame->recompute,
                                                     .setup_only = frame->setup_only,
+                                                    .counters = ctx->readback,
                                                     .background = frame->background,
                                                     .idle = frame->idle};
     tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);

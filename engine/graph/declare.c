@@ -238,6 +238,18 @@ static void inspect_node(tyn_graph *g, const tyn_pass_desc *pass, const tyn_ref 
     tyn_graph_output(g, name, ref, true);
 }
 
+// Has the buffer read back in which the first node of a pass counts.
+static void count_node(tyn_graph *g, const tyn_pass_desc *pass, const tyn_ref *refs)
+{
+    bool first = g->mode.counters && pass->counters && refs[pass->counter_port].resource;
+    for (uint32_t i = 0; first && i + 1 < g->num_nodes; i++) {
+        first = g->nodes[i].pass != pass;
+    }
+    if (first) {
+        tyn_graph_output(g, pass->name, refs[pass->counter_port], true);
+    }
+}
+
 // ---- nodes ------------------------------------------------------------------------------------
 
 bool tyn_build_has(const tyn_builder *b, uint8_t port)
@@ -456,6 +468,9 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     }
     tyn_builder b = {.g = g, .node = n};
     tyn_result result = pass->declare(&b, n->params);
+    if (result == TYN_OK && pass->counter_bytes) {
+        tyn_build_buffer(&b, pass->counter_port, pass->counter_bytes);
+    }
     if (result != TYN_OK && g->status == TYN_OK) {
         g->status = result; // declare has said why
     }
@@ -465,6 +480,7 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
         hold_node(g, n, index);
         publish_outputs(g, n, index, refs);
         inspect_node(g, pass, refs);
+        count_node(g, pass, refs);
     }
     return g->status;
 }

@@ -91,7 +91,7 @@ static void put_plan(text *t, tyn_graph *g, uint32_t index, tyn_track *tracks)
                       .print = put_line,
                       .print_user = t};
     recorder_enter(&r);
-    g->nodes[index].pass->record(&r, g->nodes[index].params);
+    recorder_run(&r);
 }
 
 // Could the method have declared it, and did not? It says so of passes that not all scenes need.

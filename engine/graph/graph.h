@@ -35,6 +35,8 @@ typedef struct tyn_record_mode {
     bool
         recompute; // every node that depends on more than the media runs, changed or not (for timing)
     bool setup_only; // only uploads and nodes that depend on the media alone
+    // What passes count is read back, as outputs named as the passes: by the next nodes that are added. Else it keeps nothing alive.
+    bool counters;
     // Pipelines are compiled beside tyn_graph_compile and tyn_graph_record, which return TYN_PENDING until they are there:
     // compile keeps what was compiled before, and record only takes host images to their `after`.
     bool background;

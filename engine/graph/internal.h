@@ -357,6 +357,8 @@ int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels
 tyn_access graph_transfer(const resource *r, bool write);
 VkImageMemoryBarrier2 graph_image_barrier(const resource *r, VkImage image, const tyn_barrier *b);
 void graph_memory_barrier(const tyn_graph *g, VkCommandBuffer cmd, const tyn_barrier *b);
+// What a node does, in the recorder's mode.
+void recorder_run(tyn_recorder *r);
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);
 // Before a node: what it makes may lie where others are; whoever used that memory has to be done with it.

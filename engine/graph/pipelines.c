@@ -38,7 +38,7 @@ static tyn_result want_all(tyn_graph *g)
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         if (g->nodes[i].needed) {
             tyn_recorder r = {.g = g, .node = i, .mode = RECORD_PIPELINES};
-            g->nodes[i].pass->record(&r, g->nodes[i].params);
+            recorder_run(&r);
             if (r.result != TYN_OK) {
                 return r.result;
             }

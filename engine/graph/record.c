@@ -262,7 +262,7 @@ static tyn_result make_sets(tyn_graph *g, const bool *run_node)
     for (uint32_t i = 0; reset == TYN_OK && i < g->num_nodes; i++) {
         tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SETS};
         if (run_node[i]) {
-            g->nodes[i].pass->record(&r, g->nodes[i].params);
+            recorder_run(&r);
         }
         if (r.result != TYN_OK) {
             return r.result;
@@ -330,7 +330,7 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     timestamp(g, cmd, index * 2);
     tyn_recorder r = {.g = g, .node = index, .mode = RECORD_LIVE, .cmd = cmd};
     recorder_enter(&r);
-    n->pass->record(&r, n->params);
+    recorder_run(&r);
     timestamp(g, cmd, index * 2 + 1);
     if (dev->debug_names) {
         dev->vk.CmdEndDebugUtilsLabelEXT(cmd);

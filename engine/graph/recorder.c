@@ -661,3 +661,12 @@ void tyn_rec_copy_buffer(tyn_recorder *r, uint8_t src, uint8_t dst, uint64_t byt
                                     &(VkBufferCopy){0, 0, bytes});
     }
 }
+
+void recorder_run(tyn_recorder *r)
+{
+    const node *n = node_of(r);
+    if (n->pass->counter_bytes) {
+        tyn_rec_fill(r, n->pass->counter_port, 0);
+    }
+    n->pass->record(r, n->params);
+}

@@ -41,7 +41,7 @@ tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage)
             continue;
         }
         tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SURVEY, .survey = s, .usage = usage};
-        g->nodes[i].pass->record(&r, g->nodes[i].params);
+        recorder_run(&r);
         if (r.result != TYN_OK) {
             return r.result;
         }

@@ -94,15 +94,23 @@ static bool check_pass(const char *who, const tyn_pass_desc *pass, const tyn_log
                pass->name);
     }
     if (!pass->num_ports || pass->num_ports > TYN_MAX_PORTS ||
-        (pass->num_params && !pass->params) || pass->debug_port >= pass->num_ports) {
-        REFUSE("%s: pass '%s': %u ports; it must have 1 to %d, the debug port %u among them", who,
-               pass->name, pass->num_ports, TYN_MAX_PORTS, pass->debug_port);
+        (pass->num_params && !pass->params) || pass->debug_port >= pass->num_ports ||
+        pass->counter_port >= pass->num_ports) {
+        REFUSE("%s: pass '%s': %u ports; it must have 1 to %d, the debug port %u and the counters' "
+               "port %u among them",
+               who, pass->name, pass->num_ports, TYN_MAX_PORTS, pass->debug_port,
+               pass->counter_port);
     }
     bool fit = true;
     for (uint32_t i = 0; i < pass->num_ports; i++) {
         if (!pass->ports[i].name || !pass->ports[i].meaning) {
             REFUSE("%s: pass '%s': port %u has no name, or no meaning", who, pass->name, i);
         }
+    }
+    const tyn_port *counts = &pass->ports[pass->counter_port];
+    if (pass->counters && (counts->dir != TYN_OUT || counts->dim != TYN_BUFFER)) {
+        REFUSE("%s: pass '%s' counts in its port '%s', which is no buffer that it makes", who,
+               pass->name, counts->name);
     }
     for (uint32_t i = 0; i < pass->num_kernels && fit; i++) {
         fit = check_kernel(who, pass, &pass->kernels[i], log);

@@ -187,7 +187,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
         return TYN_ERR_PARAMS;
     }
     tyn_extent extent = {p->extent[0], p->extent[1], p->extent[2]};
-    tyn_build_buffer(b, BEAM_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, BEAM_PORT_BEAMS, sizeof(p->beams));
     if (p->mode == TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, BEAM_PORT_COLUMN, extent, 1);
@@ -204,7 +203,6 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_beam_params *p = params;
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    tyn_rec_fill(r, BEAM_PORT_COUNTERS, 0);
     tyn_rec_update(r, BEAM_PORT_BEAMS, 0, p->beams, sizeof(p->beams));
     // Slices and columns that no point reads are not computed, but rounding lets a fetch beside them give
     // them a weight of 1e-7: they must be finite.
@@ -236,5 +234,5 @@ const tyn_pass_desc tyn_pass_beam = {
     TYN_SETTINGS(params_table),
     .debug_port = BEAM_PORT_COLUMN,
     .debug_meaning = "column density in the slices of the suns' grids",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
+    TYN_COUNTS(BEAM_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

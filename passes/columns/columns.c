@@ -50,7 +50,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     uint32_t columns, nodes;
     grid_size(p, &columns, &nodes);
-    tyn_build_buffer(b, COLUMNS_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, COLUMNS_PORT_COLUMNS, 4 * words);
     tyn_build_buffer(b, COLUMNS_PORT_NODES,
                      (uint64_t)batch_size(p, nodes) * components(p) * nodes * sizeof(float));
@@ -66,7 +65,6 @@ static void record(tyn_recorder *r, const void *params)
     uint32_t batch = batch_size(p, nodes);
     struct columns_args args = {.dims = {p->dims[0], p->dims[1], p->dims[2]},
                                 .stride = num_components * nodes};
-    tyn_rec_fill(r, COLUMNS_PORT_COUNTERS, 0);
     for (args.first = 0; args.first < p->count; args.first += batch) {
         uint32_t ordinates = p->count - args.first < batch ? p->count - args.first : batch;
         TYN_DISPATCH(r, .kernel = num_components > 1 ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
@@ -102,5 +100,5 @@ const tyn_pass_desc tyn_pass_columns = {
     TYN_PASS_TABLES(tyn_columns_params),
     .debug_port = COLUMNS_PORT_COLUMNS,
     .debug_meaning = "medium integrated along each ordinate to each cell, roots as halves",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
+    TYN_COUNTS(COLUMNS_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

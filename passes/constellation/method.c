@@ -119,7 +119,6 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     refs[CONSTELLATION_PORT_MEDIUM] = job->refs.medium;
     tyn_connect(refs, CONSTELLATION_PORT_SHADOW_ATLAS, s->shadows);
     tyn_graph_add(g, &tyn_pass_constellation, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_constellation, refs[CONSTELLATION_PORT_COUNTERS]);
     tyn_add_results(g, job,
                     (tyn_picture){refs[CONSTELLATION_PORT_RADIANCE],
                                   refs[CONSTELLATION_PORT_TRANSMITTANCE],

@@ -98,7 +98,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     uint64_t orders = (uint64_t)DEGREES * TYN_GLOW_HEIGHT * sizeof(struct glow_order);
     tyn_build_image(b, ENV_GLOW_PORT_GLOW, (tyn_extent){TYN_GLOW_WIDTH, TYN_GLOW_HEIGHT, levels},
                     1);
-    tyn_build_buffer(b, ENV_GLOW_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, ENV_GLOW_PORT_SERIES, sizeof(struct glow_series));
     tyn_build_buffer(b, ENV_GLOW_PORT_ROWS, orders);
     tyn_build_buffer(b, ENV_GLOW_PORT_COEFFICIENTS,
@@ -114,7 +113,6 @@ static void record(tyn_recorder *r, const void *params)
     if (tyn_rec_live(r)) {
         make_series(p, &series);
     }
-    tyn_rec_fill(r, ENV_GLOW_PORT_COUNTERS, 0);
     tyn_rec_update(r, ENV_GLOW_PORT_SERIES, 0, &series, sizeof series);
     // A map without mips that is finer than the glow is not expected.
     tyn_extent sky = tyn_rec_extent(r, ENV_GLOW_PORT_SKY);
@@ -140,15 +138,6 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "bytes", 16.0 * TYN_GLOW_WIDTH * TYN_GLOW_HEIGHT * levels);
 }
 
-static const tyn_counter counters[] = {
-    TYN_COUNTER_NON_FINITE,
-    {"clamped", offsetof(struct counters_block, clamped)},
-    TYN_COUNTER_HIDDEN("of the smeared map's light",
-                       "accuracy: the environment that shows through forward scattering would be "
-                       "negative beside its bright places and is set to 0: %g %% of its light"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_env_glow = {
     .name = "env_glow",
     .summary = "the environment as it looks through a medium that scatters forward",
@@ -156,5 +145,10 @@ const tyn_pass_desc tyn_pass_env_glow = {
     TYN_PASS_TABLES(tyn_env_glow_params),
     .debug_port = ENV_GLOW_PORT_GLOW,
     .debug_meaning = "the smeared map at a middle depth",
-    .counters = counters,
+    TYN_COUNTS(ENV_GLOW_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE,
+               {"clamped", offsetof(struct counters_block, clamped)},
+               TYN_COUNTER_HIDDEN(
+                   "of the smeared map's light",
+                   "accuracy: the environment that shows through forward scattering would be "
+                   "negative beside its bright places and is set to 0: %g %% of its light")),
 };

@@ -187,7 +187,6 @@ static void add_field(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
         tyn_connect(refs, GRADIENT_PORT_WALL_LINKS, s->walls.cut);
     }
     tyn_graph_add(g, &tyn_pass_gradient, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_gradient, refs[GRADIENT_PORT_COUNTERS]);
     field->inscatter = refs[GRADIENT_PORT_INSCATTER];
     field->inscatter_is = scattered.resource ? TYN_INSCATTER_SCALED : TYN_INSCATTER_PLAIN;
     field->cell = longest / (float)tyn_gradient_field(&params);

@@ -116,7 +116,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, LATTICE_PORT_LAUNCHES, sizeof(uint32_t) * 3 * LATTICE_MAX_LAUNCHES);
     tyn_build_buffer(b, LATTICE_PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_WALL_POWER, walls ? 2 * scalar * n : scalar);
-    tyn_build_buffer(b, LATTICE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LATTICE_PORT_LEAKS,
                      sizeof(float) * LATTICE_DIRECTIONS * lines_of(dims) * channels);
     return TYN_OK;
@@ -308,7 +307,6 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
     s.args.march = !repeat[2] ? 2 : !repeat[1] ? 1 : 0;
-    tyn_rec_fill(r, LATTICE_PORT_COUNTERS, 0);
     on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
         on_level(&s, KERNEL_STENCIL, 0, cells_of(&s, 0), 0);
@@ -363,24 +361,6 @@ static const tyn_param param_table[] = {
      "start from the last frame's solution: for sequences", NULL},
 };
 
-static const tyn_counter counters[] = {
-    TYN_COUNTERS,
-    {.name = "unsettled",
-     .offset = offsetof(struct counters_block, unsettled),
-     .real = true,
-     .count = 3,
-     .unit = "of the scattered light",
-     .limit = 0.02,
-     .warning =
-         "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
-         "would still change; more sweeps are needed (-D lattice.sweeps)"},
-    TYN_COUNTER_HIDDEN("of what walls send out",
-                       "accuracy: walls of the lattice would send out negative light, which is set "
-                       "to 0: %g %% of what they send out; the lattice is not solved to the end "
-                       "(-D lattice.sweeps)"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_lattice = {
     .name = "lattice",
     .summary =
@@ -390,5 +370,20 @@ const tyn_pass_desc tyn_pass_lattice = {
     TYN_SETTINGS(param_table),
     .debug_port = LATTICE_PORT_MOMENTS,
     .debug_meaning = "fluence and flux of the scattered light in a slice, W/m^2",
-    .counters = counters,
+    TYN_COUNTS(
+        LATTICE_PORT_COUNTERS, struct counters_block, TYN_COUNTERS,
+        {.name = "unsettled",
+         .offset = offsetof(struct counters_block, unsettled),
+         .real = true,
+         .count = 3,
+         .unit = "of the scattered light",
+         .limit = 0.02,
+         .warning =
+             "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
+             "would still change; more sweeps are needed (-D lattice.sweeps)"},
+        TYN_COUNTER_HIDDEN(
+            "of what walls send out",
+            "accuracy: walls of the lattice would send out negative light, which is set "
+            "to 0: %g %% of what they send out; the lattice is not solved to the end "
+            "(-D lattice.sweeps)")),
 };

@@ -17,7 +17,6 @@ static tyn_ref add_constellation(tyn_graph *g, const tyn_job *job, uint32_t ligh
         refs[MEDIAN_CUT_PORT_SUMS] = tyn_add_map_sums(g, job, !suns_apart);
     }
     tyn_graph_add(g, &tyn_pass_median_cut, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_median_cut, refs[MEDIAN_CUT_PORT_CONSTELLATION]);
     return refs[MEDIAN_CUT_PORT_CONSTELLATION];
 }
 

@@ -24,7 +24,6 @@ static tyn_ref add_reflected(tyn_graph *g, const tyn_job *job, const tyn_sources
     tyn_connect(refs, LPV_REFLECT_PORT_RSM_FLUX, rsm.maps);
     tyn_connect(refs, LPV_REFLECT_PORT_WALL_LINKS, s->walls.cut);
     tyn_graph_add(g, &tyn_pass_lpv_reflect, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_lpv_reflect, refs[LPV_REFLECT_PORT_COUNTERS]);
     return refs[LPV_REFLECT_PORT_REFLECTED];
 }
 
@@ -45,7 +44,6 @@ static tyn_ref add_scattered(tyn_graph *g, const tyn_job *job, const tyn_sources
     tyn_connect(refs, LPV_SCATTER_PORT_SHADOW_ATLAS, s->shadows);
     tyn_connect(refs, LPV_SCATTER_PORT_WALL_LINKS, s->walls.cut);
     tyn_graph_add(g, &tyn_pass_lpv_scatter, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_lpv_scatter, refs[LPV_SCATTER_PORT_COUNTERS]);
     return refs[LPV_SCATTER_PORT_SCATTERED];
 }
 
@@ -110,7 +108,6 @@ void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_f
         refs[LPV_PORT_SCATTERED] = add_scattered(g, job, s);
     }
     tyn_graph_add(g, &tyn_pass_lpv, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_lpv, refs[LPV_PORT_COUNTERS]);
     const bool blocked = refs[LPV_PORT_WALL_LINKS].resource || refs[LPV_PORT_BLOCKING].resource;
     field->moments = refs[LPV_PORT_MOMENTS];
     field->leaks = refs[LPV_PORT_LEAKS];

@@ -29,7 +29,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     tyn_build_image(b, MERGE_PORT_INSCATTER,
                     (tyn_extent){dims.x + 2, dims.y + 2, dims.z / p->channels + 2}, 1);
-    tyn_build_buffer(b, MERGE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, MERGE_PORT_FIELD,
                      4ull * dims.x * dims.y * (dims.z / p->channels) * (p->channels + 1));
     return TYN_OK;
@@ -46,7 +45,6 @@ static void record(tyn_recorder *r, const void *params)
                               .first_radial = p->marched_lamps,
                               .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]},
                               .reach = p->reach};
-    tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args);
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {
         const uint32_t spec[4] = {p->mode, p->grey, p->channels,
@@ -63,15 +61,6 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
 }
 
-static const tyn_counter counters[] = {
-    TYN_COUNTERS,
-    {"ghosts", offsetof(struct counters_block, ghosts)},
-    TYN_COUNTER_HIDDEN("of what cells scatter towards the eye",
-                       "accuracy: cells of the lattice would send negative light to the camera, "
-                       "which is set to 0: %g %% of what they send; the picture is brighter there"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_merge = {
     .name = "merge",
     .summary = "light that each cell scatters towards the eye",
@@ -79,5 +68,10 @@ const tyn_pass_desc tyn_pass_merge = {
     TYN_PASS_TABLES(tyn_merge_params),
     .debug_port = MERGE_PORT_INSCATTER,
     .debug_meaning = "radiance towards the eye per sigma_s' in a slice",
-    .counters = counters,
+    TYN_COUNTS(MERGE_PORT_COUNTERS, struct counters_block, TYN_COUNTERS,
+               {"ghosts", offsetof(struct counters_block, ghosts)},
+               TYN_COUNTER_HIDDEN(
+                   "of what cells scatter towards the eye",
+                   "accuracy: cells of the lattice would send negative light to the camera, "
+                   "which is set to 0: %g %% of what they send; the picture is brighter there")),
 };

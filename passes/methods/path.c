@@ -100,7 +100,6 @@ static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
-    tyn_job_counters(g, job, &tyn_pass_path, refs[PATH_PORT_COUNTERS]);
     if (job->outputs & TYN_OUTPUT_DISPLAY) {
         tyn_add_display(g, job, refs[PATH_PORT_RADIANCE]);
     }
@@ -118,7 +117,6 @@ static void add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_connect_path_scene(refs, job, bricks);
     tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
-    tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
 }
 
 // The box that is balanced.
@@ -169,7 +167,6 @@ static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_connect_path_scene(refs, job, bricks);
     tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
-    tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
 }
 
 // What paths from suns and surroundings do not carry.
@@ -221,7 +218,6 @@ static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_graph_refuse(g, check_fluxes(job));
     tyn_graph_add(g, &tyn_pass_path_fluxes, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
-    tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
 }
 
 // A periodic medium's own axes must be those of M; surfaces repeat with it, each copy in a period of its own.

@@ -79,4 +79,5 @@ const tyn_pass_desc tyn_pass_ordinates = {
     .debug_port = ORDINATES_PORT_ORDINATES,
     .debug_meaning = "struct ordinates_block",
     .counters = counters,
+    .counter_port = ORDINATES_PORT_ORDINATES,
 };

@@ -14,7 +14,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, PATH_PORT_SINGLE, p->layers ? size : none, 1);
     tyn_build_image(b, PATH_PORT_MULTIPLE, p->layers ? size : none, 1);
     tyn_build_image(b, PATH_PORT_TRANSMITTANCE, p->layers ? size : none, 1);
-    tyn_build_buffer(b, PATH_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_PORT_QUEUE, sizeof(uint32_t));
     tyn_build_buffer(b, PATH_PORT_PARTIALS, threads * sizeof(struct path_partial));
     tyn_build_buffer(b, PATH_PORT_LAYERS,
@@ -30,7 +29,6 @@ static void record(tyn_recorder *r, const void *params)
     path_split s = path_split_work(p, pixels);
     uint32_t slots = s.slots < p->num_samples ? s.slots : p->num_samples; // none is empty
     path_specialise(spec, p);
-    tyn_rec_fill(r, PATH_PORT_COUNTERS, 0);
     tyn_rec_fill(r, PATH_PORT_QUEUE, 0);
     for (uint32_t first = 0; first < pixels; first += s.tile) {
         uint32_t num = pixels - first < s.tile ? pixels - first : s.tile;
@@ -60,5 +58,5 @@ const tyn_pass_desc tyn_pass_path = {
     TYN_SETTINGS(path_params_table),
     .debug_port = PATH_PORT_ERROR,
     .debug_meaning = "standard error of each pixel",
-    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
+    TYN_COUNTS(PATH_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),
 };

@@ -15,7 +15,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_path_params *p = params;
     tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, TYN_BALANCE_BYTES);
     tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_balance_result));
-    tyn_build_buffer(b, PATH_BALANCE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_BALANCE_PORT_PARTIALS,
                      (uint64_t)p->threads * sizeof(struct path_balance_partial));
     return TYN_OK;
@@ -37,7 +36,6 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t groups = p->num_samples > kinds ? p->num_samples / kinds : 1;
     const uint32_t before = p->first_sample / p->num_samples;
     const uint32_t threads = groups < p->threads ? groups : p->threads;
-    tyn_rec_fill(r, PATH_BALANCE_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
         struct path_args args = path_trace_args(p, 0, 1, threads);
         args.num_samples = groups * kinds;
@@ -63,5 +61,5 @@ const tyn_pass_desc tyn_pass_path_balance = {
     TYN_SETTINGS(path_params_table),
     .debug_port = PATH_BALANCE_PORT_RESULT,
     .debug_meaning = "power entering, emitted, absorbed, escaped",
-    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
+    TYN_COUNTS(PATH_BALANCE_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),
 };

@@ -13,7 +13,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;
     tyn_build_buffer(b, PATH_FLUXES_PORT_FLUXES, sizeof(struct path_fluxes_result));
-    tyn_build_buffer(b, PATH_FLUXES_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_FLUXES_PORT_PARTIALS,
                      (uint64_t)p->threads * TYN_PATH_FLUX_VALUES * sizeof(float));
     return TYN_OK;
@@ -26,7 +25,6 @@ static void record(tyn_recorder *r, const void *params)
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
     spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE);
-    tyn_rec_fill(r, PATH_FLUXES_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
         struct path_args args = path_trace_args(p, 0, 1, p->threads);
         args.first_sample = p->first_sample + chunk * p->num_samples;
@@ -47,5 +45,5 @@ const tyn_pass_desc tyn_pass_path_fluxes = {
     TYN_SETTINGS(path_params_table),
     .debug_port = PATH_FLUXES_PORT_FLUXES,
     .debug_meaning = "incident, leaving and absorbed power",
-    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
+    TYN_COUNTS(PATH_FLUXES_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),
 };

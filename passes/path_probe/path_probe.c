@@ -16,7 +16,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     path_split s = path_split_work(params, points);
     tyn_build_buffer(b, PATH_PROBE_PORT_RESULTS,
                      (uint64_t)points * sizeof(struct path_probe_result));
-    tyn_build_buffer(b, PATH_PROBE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_PROBE_PORT_PARTIALS,
                      (uint64_t)s.tile * s.slots * sizeof(struct path_probe_partial));
     return TYN_OK;
@@ -29,7 +28,6 @@ static void record(tyn_recorder *r, const void *params)
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_split s = path_split_work(p, points);
     path_specialise(spec, p);
-    tyn_rec_fill(r, PATH_PROBE_PORT_COUNTERS, 0);
     for (uint32_t first = 0; first < points; first += s.tile) {
         uint32_t num = points - first < s.tile ? points - first : s.tile;
         const struct path_args args = path_trace_args(p, first, num, s.slots);
@@ -50,5 +48,5 @@ const tyn_pass_desc tyn_pass_path_probe = {
     TYN_SETTINGS(path_params_table),
     .debug_port = PATH_PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and net flux",
-    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
+    TYN_COUNTS(PATH_PROBE_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),
 };

@@ -249,7 +249,6 @@ static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     };
     tyn_connect(eye, PHOTON_VIEW_PORT_MEDIUM, s->medium);
     tyn_graph_add(g, &tyn_pass_photon_view, &view, eye);
-    tyn_job_counters(g, job, &tyn_pass_photon_view, eye[PHOTON_VIEW_PORT_COUNTERS]);
     field->inscatter = eye[PHOTON_VIEW_PORT_INSCATTER];
     field->inscatter_is = scaled ? TYN_INSCATTER_SCALED : TYN_INSCATTER_PLAIN;
     field->cell = s->lattice.side * (float)s->lattice.shape.cells / (float)up.cells;
@@ -271,7 +270,6 @@ void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     };
     tyn_connect_path_scene(refs, job, s->bricks);
     tyn_graph_add(g, &tyn_pass_photon_trace, &trace, refs);
-    tyn_job_counters(g, job, &tyn_pass_photon_trace, refs[PHOTON_TRACE_PORT_COUNTERS]);
 
     tyn_photon_cache_params cache;
     tyn_settings_params(job->settings, &tyn_pass_photon_cache, &cache);
@@ -292,7 +290,6 @@ void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
             tyn_graph_history_buffer(g, "photon_sum", tyn_photon_sum_size(&trace), key),
     };
     tyn_graph_add(g, &tyn_pass_photon_cache, &cache, sums);
-    tyn_job_counters(g, job, &tyn_pass_photon_cache, sums[PHOTON_CACHE_PORT_COUNTERS]);
     field->moments = sums[PHOTON_CACHE_PORT_MOMENTS];
     field->cell = s->lattice.side;
     field->one_channel = false;

@@ -141,9 +141,6 @@ static void add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
     p->places = refs[PROPAGATE_RECT_PORT_PLACES];
     p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
     p->light = refs[PROPAGATE_RECT_PORT_LIGHT];
-    if (p->grids.threshold > 0) {
-        tyn_job_counters(g, job, &tyn_pass_propagate_rect, refs[PROPAGATE_RECT_PORT_FLIGHT]);
-    }
 }
 
 static void add_residuum(tyn_graph *g, propagated *p)

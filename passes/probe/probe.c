@@ -13,7 +13,6 @@ static uint32_t num_points(tyn_extent bytes)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
-    tyn_build_buffer(b, PROBE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PROBE_PORT_RESULTS,
                      (uint64_t)num_points(tyn_build_extent(b, PROBE_PORT_POINTS)) *
                          sizeof(struct probe_result));
@@ -34,7 +33,6 @@ static void record(tyn_recorder *r, const void *params)
         .cells = tyn_rec_has(r, PROBE_PORT_CELLS),
     };
     memcpy(args.world, p->world, sizeof args.world);
-    tyn_rec_fill(r, PROBE_PORT_COUNTERS, 0);
     const uint32_t spec[5] = {
         p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS), tyn_rec_has(r, PROBE_PORT_SHADOW_ATLAS),
         tyn_rec_has(r, PROBE_PORT_VPL_DISTANCES), tyn_rec_has(r, PROBE_PORT_ROOMS)};
@@ -49,7 +47,6 @@ const tyn_pass_desc tyn_pass_probe = {
     TYN_PASS_TABLES(tyn_probe_params),
     .debug_port = PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and flux per point, W/m^2",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE,
-                                      {"clamped", offsetof(struct counters_block, clamped)},
-                                      {NULL}},
+    TYN_COUNTS(PROBE_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE,
+               {"clamped", offsetof(struct counters_block, clamped)}),
 };

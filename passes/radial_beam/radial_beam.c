@@ -113,7 +113,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_extent extent = {args.size[0], args.size[1], args.size[2]};
     tyn_build_buffer(b, RADIAL_BEAM_PORT_GRIDS,
                      offsetof(struct radial_block, list) + lights * sizeof(struct radial_grid));
-    tyn_build_buffer(b, RADIAL_BEAM_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, RADIAL_BEAM_PORT_LAMPS, sizeof p->lamps);
     if (p->mode == TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, RADIAL_BEAM_PORT_RADIAL_COLUMN, extent, 1);
@@ -130,7 +129,6 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_radial_beam_params *p = params;
     struct radial_beam_args args = layout(p);
-    tyn_rec_fill(r, RADIAL_BEAM_PORT_COUNTERS, 0);
     tyn_rec_update(r, RADIAL_BEAM_PORT_LAMPS, 0, p->lamps, sizeof p->lamps);
     TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {p->num_lamps + p->max_vpls, 1, 1},
                  .args = &args);
@@ -157,5 +155,5 @@ const tyn_pass_desc tyn_pass_radial_beam = {
     TYN_SETTINGS(params_table),
     .debug_port = RADIAL_BEAM_PORT_RADIAL_COLUMN,
     .debug_meaning = "mean density from lights outwards: maps of directions",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
+    TYN_COUNTS(RADIAL_BEAM_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

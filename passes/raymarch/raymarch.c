@@ -111,7 +111,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
                     (tyn_extent){nodes.x ? 2 * nodes.x : 1, nodes.y ? 2 * nodes.y : 1, 1}, 1);
     tyn_build_buffer(b, RAYMARCH_PORT_REST,
                      2 * sizeof(struct raymarch_rest) + 4 * ((uint64_t)nodes.x * nodes.y + pixels));
-    tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
 
@@ -275,7 +274,6 @@ static void record(tyn_recorder *r, const void *params)
         args.end[0] = p->width;
         args.end[1] = p->height;
     }
-    tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
     // What lies outside the window first, as the window's edges are not on workgroups.
     // The binding of a layer that is not made is not written to, so any image will do.
     uint8_t absent[NUM_LAYERS][2], background_ports[TYN_MAX_BINDINGS], ports_of[TYN_MAX_BINDINGS];
@@ -300,14 +298,6 @@ static void record(tyn_recorder *r, const void *params)
     }
 }
 
-static const tyn_counter counters[] = {
-    TYN_COUNTERS,
-    TYN_COUNTER_HIDDEN("of the picture's light",
-                       "accuracy: pixels would be negative and are set to 0: %g %% of the "
-                       "picture's light"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_raymarch = {
     .name = "raymarch",
     .summary = "light of the medium gathered along the rays of a camera",
@@ -316,5 +306,9 @@ const tyn_pass_desc tyn_pass_raymarch = {
     TYN_SETTINGS(params_table),
     .debug_port = RAYMARCH_PORT_RADIANCE,
     .debug_meaning = "radiance, exposed by its own mean",
-    .counters = counters,
+    TYN_COUNTS(
+        RAYMARCH_PORT_COUNTERS, struct counters_block, TYN_COUNTERS,
+        TYN_COUNTER_HIDDEN("of the picture's light",
+                           "accuracy: pixels would be negative and are set to 0: %g %% of the "
+                           "picture's light")),
 };

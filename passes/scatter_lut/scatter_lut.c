@@ -224,4 +224,5 @@ const tyn_pass_desc tyn_pass_scatter_lut = {
     .debug_port = SCATTER_LUT_PORT_LUT,
     .debug_meaning = "ln of the scattering kernels: depth to the right, angle down",
     .counters = counters,
+    .counter_port = SCATTER_LUT_PORT_COUNTERS,
 };

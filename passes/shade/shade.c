@@ -65,7 +65,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(PART_ROWS), blocks, 1);
     const bool alone = vpls || step > 1;
-    tyn_build_buffer(b, PORT(COUNTERS), sizeof(struct counters_block));
     tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? (uint64_t)p->size[0] * p->size[1] : 1));
     return TYN_OK;
@@ -111,7 +110,6 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.args = &args, .spec = spec};
-    tyn_rec_fill(r, PORT(COUNTERS), 0);
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
         TYN_DISPATCH(r, .kernel = KERNEL_FORWARD, .cells = cells, .spec = spec);
@@ -171,14 +169,6 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
 }
 
-static const tyn_counter counters[] = {
-    {"clamped", offsetof(struct counters_block, clamped)},
-    TYN_COUNTER_HIDDEN("of the lattice's light on surfaces",
-                       "accuracy: light of the lattice on surfaces would be negative and is set to "
-                       "0: %g %% of that light"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_shade = {
     .name = "shade",
     .summary = "radiance of the surfaces that the camera sees",
@@ -188,5 +178,10 @@ const tyn_pass_desc tyn_pass_shade = {
     TYN_SETTINGS(params),
     .debug_port = PORT(SURFACE_RADIANCE),
     .debug_meaning = "radiance of the surfaces, without the medium in front of them",
-    .counters = counters,
+    TYN_COUNTS(PORT(COUNTERS), struct counters_block,
+               {"clamped", offsetof(struct counters_block, clamped)},
+               TYN_COUNTER_HIDDEN(
+                   "of the lattice's light on surfaces",
+                   "accuracy: light of the lattice on surfaces would be negative and is set to "
+                   "0: %g %% of that light")),
 };

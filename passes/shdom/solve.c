@@ -26,7 +26,6 @@ static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uin
     tyn_connect(refs, SHDOM_VIEW_PORT_ORDINATES, s->sky.columns);
     tyn_connect(refs, SHDOM_VIEW_PORT_RADIALS, s->lamps.radials);
     tyn_graph_add(g, &tyn_pass_shdom_view, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_shdom_view, refs[SHDOM_VIEW_PORT_COUNTERS]);
     picture->inscatter = refs[SHDOM_VIEW_PORT_INSCATTER];
     picture->inscatter_is = TYN_INSCATTER_PLAIN;
     picture->cell = s->lattice.side;
@@ -63,7 +62,6 @@ void tyn_solve_shdom(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uin
     tyn_connect(refs, SHDOM_PORT_ORDINATES, s->sky.columns);
     tyn_connect(refs, SHDOM_PORT_RADIALS, s->lamps.radials);
     tyn_graph_add(g, &tyn_pass_shdom, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_shdom, refs[SHDOM_PORT_COUNTERS]);
     probes->moments = refs[SHDOM_PORT_MOMENTS];
     probes->cell = s->lattice.side;
     probes->one_channel = s->lattice.shape.channels == 1;

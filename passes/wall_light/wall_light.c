@@ -120,4 +120,5 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .debug_port = WALL_LIGHT_PORT_WALL_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
     .counters = counters,
+    .counter_port = WALL_LIGHT_PORT_POWER,
 };

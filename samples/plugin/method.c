@@ -18,7 +18,6 @@ static void solve(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_fi
         [DIFFUSION_PORT_ENVIRONMENT] = tyn_mean_environment(job, s),
     };
     tyn_graph_add(g, &pass_diffusion, &params, refs);
-    tyn_job_counters(g, job, &pass_diffusion, refs[DIFFUSION_PORT_COUNTERS]);
     field->moments = refs[DIFFUSION_PORT_MOMENTS];
     field->cell = s->lattice.side;
     field->one_channel = s->lattice.shape.channels == 1;

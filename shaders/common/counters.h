@@ -1,5 +1,5 @@
 // counters.h -- what kernels count for the stats. Included by C and GLSL. A pass that counts has an OUT
-// port "counters" of this struct, filled with zeros at the start of its record.
+// port "counters" of this struct, which TYN_COUNTS names.
 #ifndef TYN_COUNTERS_H
 #define TYN_COUNTERS_H
 #include "light_sum.h"

@@ -546,6 +546,31 @@ static void faults(void **state)
     assert_int_equal(frame(f), TYN_OK);
 }
 
+// What the first node of a pass counts is read back where that is asked for, by the pass's name; else it keeps no node alive.
+static void counters(void **state)
+{
+    fixture *f = *state;
+    static const tyn_counter rows[] = {{"groups", 0}, {NULL}};
+    static tyn_pass_desc counting;
+    counting = toy_count;
+    counting.counters = rows;
+    counting.counter_port = COUNT_GROUPS;
+    for (int asked = 0; asked < 2; asked++) {
+        tyn_graph_begin(f->g);
+        tyn_graph_mode(f->g)->counters = asked;
+        const tyn_ref in = upload(f->g, "input", 1);
+        tyn_ref first[COUNT_NUM] = {in}, second[COUNT_NUM] = {in};
+        tyn_graph_add(f->g, &counting, &(node_params){0}, first);
+        tyn_graph_add(f->g, &counting, &(node_params){0}, second);
+        tyn_graph_output(f->g, "out", second[COUNT_OUT], false);
+        assert_int_equal(frame(f), TYN_OK);
+        const tyn_node_stats *stats;
+        assert_int_equal(tyn_graph_stats(f->g, &stats), 2);
+        assert_int_equal(stats[0].state, asked ? TYN_NODE_RAN : TYN_NODE_CULLED);
+        assert_int_equal(tyn_graph_map(f->g, "count", NULL, NULL) != NULL, asked);
+    }
+}
+
 static void huge_image(void **state)
 {
     fixture *f = *state;
@@ -672,6 +697,7 @@ int main(void)
         TEST(replaced_outlives_its_frames),
         TEST(forgotten),
         TEST(faults),
+        TEST(counters),
         TEST(huge_image),
         TEST(small_device),
         TEST(no_descriptor_sets),

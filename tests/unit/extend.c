@@ -32,7 +32,7 @@ static void layout(void **state)
         SIZE(tyn_kernel, 64),
         SIZE(tyn_param, 72),
         SIZE(tyn_counter, 48),
-        SIZE(tyn_pass_desc, 144),
+        SIZE(tyn_pass_desc, 152),
         SIZE(tyn_dispatch, 56),
         SIZE(tyn_tile, 32),
         SIZE(tyn_draw, 64),
@@ -55,7 +55,7 @@ static void layout(void **state)
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),
         SIZE(tyn_method, 96),
-        SIZE(tyn_calls, 752),
+        SIZE(tyn_calls, 744),
         SIZE(tyn_plugin, 64),
         // What kernels read that were compiled with the GLSL of then.
         SIZE(struct medium_block, 196),
@@ -199,6 +199,10 @@ static void passes(void **state)
     WRONG_PASS("0 ports", pass.num_ports = 0);
     WRONG_PASS("57 ports", pass.num_ports = TYN_MAX_PORTS + 1);
     WRONG_PASS("debug port 1", pass.debug_port = 1);
+    static const tyn_port input[] = {{"in", TYN_IN, TYN_BUFFER, 0, false, "read"}};
+    static const tyn_counter rows[] = {{"steps", 0}, {NULL}};
+    WRONG_PASS("counters' port 1", pass.counters = rows, pass.counter_port = 1);
+    WRONG_PASS("counts in its port 'in'", pass.counters = rows, pass.ports = input);
     WRONG_PASS("'size'", pass.params_size = 3);
     WRONG_KERNEL("SPIR-V", kernel.spirv = NULL);
     WRONG_KERNEL("SPIR-V", kernel.spirv_size = 18);

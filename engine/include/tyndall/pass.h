@@ -186,8 +186,8 @@ typedef struct tyn_param {
 
 // ---- counters -------------------------------------------------------------------------------
 
-// What a pass's kernels count for the report (tyn_node_report.work), in a buffer that they write. A method says which
-// one that is; rows end with one without a name.
+// What a pass's kernels count for the report (tyn_node_report.work), in a buffer that they write; rows end with one
+// without a name.
 typedef struct tyn_counter {
     const char *name; // "steps", "unsettled"
     size_t offset;    // bytes into the buffer
@@ -242,6 +242,10 @@ typedef struct tyn_pass_desc {
     // What there must be for a method to declare the node, as `tyndall graph` says of those it left out.
     const char *serves;
     const tyn_counter *counters; // NULL: it counts nothing
+    // The OUT port of the buffer in which it counts. With a size in bytes the engine makes the buffer and fills it with zeros
+    // before `record`; else the pass does. Of several nodes of a frame the first one's is read.
+    uint8_t counter_port;
+    uint32_t counter_bytes;
     // Of a pass that renews a history piece by piece: offset into params of a uint32_t, in how many more frames the node
     // runs after the last change of its params or inputs. It does not where the history has just been started from zeros,
     // of which the pass makes all pieces at once. 0: it is not such a pass.
@@ -257,6 +261,10 @@ typedef struct tyn_pass_desc {
     .declare = declare, .record = record
 
 #define TYN_SETTINGS(table) .params = table, .num_params = TYN_COUNT(table)
+// TYN_COUNTS(PATH_PORT_COUNTERS, struct counters_block, rows...): in a buffer of this struct alone.
+#define TYN_COUNTS(port, block, ...)                                                               \
+    .counters = (const tyn_counter[]){__VA_ARGS__, {NULL}}, .counter_port = port,                  \
+    .counter_bytes = sizeof(block)
 
 // Fills params with zeros, then the defaults of the table.
 TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);

@@ -110,7 +110,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, CONSTELLATION_PORT_STATE_LIGHT, kept, 1);
     tyn_build_image(b, CONSTELLATION_PORT_STATE_THROUGH, kept, 1);
     tyn_build_image(b, CONSTELLATION_PORT_STATE_UNCOVERED, kept, 1);
-    tyn_build_buffer(b, CONSTELLATION_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
 
@@ -144,7 +143,6 @@ static void record(tyn_recorder *r, const void *params)
         .scale = p->norm == CONSTELLATION_NORM_4_PI ? 1 : 1 / (4 * pi),
         .rounds = of.slices,
     };
-    tyn_rec_fill(r, CONSTELLATION_PORT_COUNTERS, 0);
 
     // The binding of a layer that is not made is not written to, so any image will do.
     uint8_t absent[2][2], num_absent = 0, ports_of[TYN_MAX_BINDINGS];
@@ -177,8 +175,6 @@ static void record(tyn_recorder *r, const void *params)
     }
 }
 
-static const tyn_counter counters[] = {TYN_COUNTERS, {NULL}};
-
 const tyn_pass_desc tyn_pass_constellation = {
     .name = "constellation",
     .summary = "slices of the medium back to front, with a shadow ray per light",
@@ -187,5 +183,5 @@ const tyn_pass_desc tyn_pass_constellation = {
     .of_pixels = true,
     .debug_port = CONSTELLATION_PORT_RADIANCE,
     .debug_meaning = "radiance, exposed by its own mean",
-    .counters = counters,
+    TYN_COUNTS(CONSTELLATION_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),
 };

@@ -75,7 +75,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const bool voxel = p->interpolation == GRADIENT_VOXEL;
     const uint32_t points = voxel ? 1 : tyn_gradient_points(p);
     tyn_build_image(b, GRADIENT_PORT_INSCATTER, (tyn_extent){n.x + 2, n.y + 2, n.z + 2}, 1);
-    tyn_build_buffer(b, GRADIENT_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, GRADIENT_PORT_SAMPLES, sizeof(struct gradient_sample) * (uint64_t)points);
     tyn_build_buffer(b, GRADIENT_PORT_STATES, 4ull * points);
     tyn_build_buffer(b, GRADIENT_PORT_HEADS, sizeof(struct gradient_head));
@@ -172,7 +171,6 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_gradient_params *p = params;
     struct gradient_args args = args_of(p);
     const uint32_t features = features_of(r, p);
-    tyn_rec_fill(r, GRADIENT_PORT_COUNTERS, 0);
     const tyn_extent cells = {args.x + 2, args.y + 2, args.z + 2};
     if (p->interpolation == GRADIENT_VOXEL) {
         const uint32_t spec[] = {p->mode, features};
@@ -235,18 +233,6 @@ static const tyn_param param_table[] = {
      multiples},
 };
 
-static const tyn_counter counters[] = {
-    {"samples", offsetof(struct counters_block, pixels)},
-    {"followed", offsetof(struct counters_block, steps)},
-    TYN_COUNTER_NON_FINITE,
-    {"clamped", offsetof(struct counters_block, clamped)},
-    TYN_COUNTER_HIDDEN(
-        "of the light",
-        "accuracy: gradients lead below 0 between samples: %.1f %% of the light was set to 0 "
-        "(-D gradient.extrapolation=exponential)"),
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_gradient = {
     .name = "gradient",
     .summary = "light towards the eye from samples with gradients, split where they err",
@@ -254,5 +240,13 @@ const tyn_pass_desc tyn_pass_gradient = {
     TYN_SETTINGS(param_table),
     .debug_port = GRADIENT_PORT_INSCATTER,
     .debug_meaning = "light scattered towards the eye, per sigma_s",
-    .counters = counters,
+    TYN_COUNTS(
+        GRADIENT_PORT_COUNTERS, struct counters_block,
+        {"samples", offsetof(struct counters_block, pixels)},
+        {"followed", offsetof(struct counters_block, steps)}, TYN_COUNTER_NON_FINITE,
+        {"clamped", offsetof(struct counters_block, clamped)},
+        TYN_COUNTER_HIDDEN(
+            "of the light",
+            "accuracy: gradients lead below 0 between samples: %.1f %% of the light was set to 0 "
+            "(-D gradient.extrapolation=exponential)")),
 };

@@ -34,4 +34,5 @@ const tyn_pass_desc tyn_pass_median_cut = {
     .debug_meaning = "struct constellation_block: regions and lights",
     TYN_PASS_TABLES(tyn_median_cut_params),
     .counters = counters,
+    .counter_port = MEDIAN_CUT_PORT_CONSTELLATION,
 };

@@ -25,7 +25,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const uint64_t n = (uint64_t)texels.x * texels.y * texels.z;
     const uint32_t shells = p->extinction == LPV_EXTINCTION_PAPER ? 1 : LPV_SHELLS;
     tyn_build_image(b, LPV_PORT_MOMENTS, texels, 1);
-    tyn_build_buffer(b, LPV_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LPV_PORT_LEAKS, sizeof(float) * (p->balance ? n : channels));
     tyn_build_buffer(b, LPV_PORT_WALL_POWER, 2 * sizeof(float) * (p->balance ? n : 1));
     tyn_build_buffer(b, LPV_PORT_SENT_0, 4 * sizeof(float) * shells * n);
@@ -56,7 +55,6 @@ static void record(tyn_recorder *r, const void *params)
     static const uint8_t other_way[][2] = {{LPV_PORT_SENT_0, LPV_PORT_SENT_1},
                                            {LPV_PORT_SENT_1, LPV_PORT_SENT_0}};
     uint8_t exchanged[TYN_MAX_BINDINGS];
-    tyn_rec_fill(r, LPV_PORT_COUNTERS, 0);
     tyn_rec_fill(r, LPV_PORT_LEAKS, 0);
     tyn_rec_fill(r, LPV_PORT_WALL_POWER, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_START, .cells = texels, .args = &args, .spec = start);
@@ -115,12 +113,6 @@ static const tyn_param param_table[] = {
      "light that surfaces reflect of suns and lamps starts in the lattice", NULL},
 };
 
-static const tyn_counter counters[] = {
-    TYN_COUNTER_NON_FINITE,
-    {"bounded", offsetof(struct counters_block, clamped)},
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_lpv = {
     .name = "lpv",
     .summary = "light that has scattered, moved from cell to cell of a light propagation volume",
@@ -129,5 +121,6 @@ const tyn_pass_desc tyn_pass_lpv = {
     TYN_SETTINGS(param_table),
     .debug_port = LPV_PORT_MOMENTS,
     .debug_meaning = "fluence and flux of the scattered light in a slice, W/m^2",
-    .counters = counters,
+    TYN_COUNTS(LPV_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE,
+               {"bounded", offsetof(struct counters_block, clamped)}),
 };

@@ -18,7 +18,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_extent blocks = blocks_of(tyn_build_extent(b, LPV_REFLECT_PORT_RSM_FLUX));
     tyn_build_buffer(b, LPV_REFLECT_PORT_REFLECTED,
                      16 + 16ull * dims.x * dims.y * dims.z * p->shape.channels);
-    tyn_build_buffer(b, LPV_REFLECT_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LPV_REFLECT_PORT_PARTIALS, sizeof(float) * blocks.x * blocks.y);
     tyn_build_buffer(b, LPV_REFLECT_PORT_TILES,
                      sizeof(struct rsm_tile) * (p->num_tiles ? p->num_tiles : 1));
@@ -38,7 +37,6 @@ static void record(tyn_recorder *r, const void *params)
         .num_blocks = blocks.x * blocks.y,
     };
     tyn_rec_fill(r, LPV_REFLECT_PORT_REFLECTED, 0);
-    tyn_rec_fill(r, LPV_REFLECT_PORT_COUNTERS, 0);
     if (p->num_tiles == 0) {
         return;
     }
@@ -59,8 +57,6 @@ static void record(tyn_recorder *r, const void *params)
     }
 }
 
-static const tyn_counter counters[] = {TYN_COUNTER_NON_FINITE, {NULL}};
-
 const tyn_pass_desc tyn_pass_lpv_reflect = {
     .name = "lpv_reflect",
     .summary = "light that surfaces reflect first, into the cells of a light propagation volume",
@@ -68,5 +64,5 @@ const tyn_pass_desc tyn_pass_lpv_reflect = {
     TYN_PASS_TABLES(tyn_lpv_reflect_params),
     .debug_port = LPV_REFLECT_PORT_REFLECTED,
     .debug_meaning = "power that starts in cells, in units of a bound of the sum",
-    .counters = counters,
+    TYN_COUNTS(LPV_REFLECT_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

@@ -123,7 +123,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
     tyn_build_buffer(b, LPV_SCATTER_PORT_SCATTERED,
                      16 + 16ull * dims.x * dims.y * dims.z * p->shape.channels);
-    tyn_build_buffer(b, LPV_SCATTER_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LPV_SCATTER_PORT_RAYS,
                      sizeof p->bundles[0] * (p->num_bundles ? p->num_bundles : 1));
     return TYN_OK;
@@ -149,7 +148,6 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t spec[3] = {p->mode, tyn_rec_has(r, LPV_SCATTER_PORT_SHADOW_ATLAS),
                               tyn_rec_has(r, LPV_SCATTER_PORT_WALL_LINKS)};
     tyn_rec_fill(r, LPV_SCATTER_PORT_SCATTERED, 0);
-    tyn_rec_fill(r, LPV_SCATTER_PORT_COUNTERS, 0);
     if (p->num_bundles == 0) {
         return;
     }
@@ -172,12 +170,6 @@ static const tyn_param param_table[] = {
      "places on a ray where light scatters", NULL},
 };
 
-static const tyn_counter counters[] = {
-    TYN_COUNTER_NON_FINITE,
-    {"bounded", offsetof(struct counters_block, clamped)},
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_lpv_scatter = {
     .name = "lpv_scatter",
     .summary = "light that scatters first, by samples along the rays of suns and lamps",
@@ -186,5 +178,6 @@ const tyn_pass_desc tyn_pass_lpv_scatter = {
     TYN_SETTINGS(param_table),
     .debug_port = LPV_SCATTER_PORT_SCATTERED,
     .debug_meaning = "power that starts in cells, in units of a bound of the sum",
-    .counters = counters,
+    TYN_COUNTS(LPV_SCATTER_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE,
+               {"bounded", offsetof(struct counters_block, clamped)}),
 };

@@ -34,14 +34,6 @@ void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref 
     }
 }
 
-void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass, tyn_ref ref)
-{
-    // Named as the pass: the report finds them by the node's name. Unasked, they keep nothing alive.
-    if (job->readback && ref.resource) {
-        tyn_graph_output(g, pass->name, ref, true);
-    }
-}
-
 uint32_t tyn_job_hooks_read(const tyn_job *job)
 {
     uint32_t all = 0;

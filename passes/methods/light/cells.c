@@ -120,7 +120,6 @@ static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = s->sky.ordinates};
     tyn_connect(refs, COLUMNS_PORT_MEDIUM, medium);
     tyn_graph_add(g, &tyn_pass_columns, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_columns, refs[COLUMNS_PORT_COUNTERS]);
     tyn_take(refs, COLUMNS_PORT_ORDINATES, s->sky.columns);
 }
 

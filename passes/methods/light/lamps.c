@@ -51,7 +51,6 @@ void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_ref refs[TYN_MAX_PORTS] = {[RADIAL_BEAM_PORT_VPLS] = vpls};
     tyn_connect(refs, RADIAL_BEAM_PORT_MEDIUM, s->medium);
     tyn_graph_add(g, &tyn_pass_radial_beam, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_radial_beam, refs[RADIAL_BEAM_PORT_COUNTERS]);
     lights.num_lamps = params.num_lamps;
     lights.max_vpls = params.max_vpls;
     tyn_ref shining[TYN_MAX_PORTS] = {[RADIAL_LIGHTS_PORT_GRIDS] = refs[RADIAL_BEAM_PORT_GRIDS]};

@@ -144,8 +144,6 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     if (directions) {
         add_directions(g, job, params, refs, sky);
     }
-    tyn_job_counters(g, job, &tyn_pass_ordinates,
-                     sky->ordinates); // how many, and how many were folded
 }
 
 void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,

@@ -17,7 +17,6 @@ void tyn_add_beams(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_connect(refs, BEAM_PORT_MEDIUM, s->medium);
     tyn_graph_add(g, &tyn_pass_beam, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_beam, refs[BEAM_PORT_COUNTERS]);
     tyn_take(refs, BEAM_PORT_BEAMS, s->beams);
 }
 

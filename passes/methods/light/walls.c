@@ -114,7 +114,6 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
     tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     s->walls.light = refs[WALL_LIGHT_PORT_WALL_LIGHT];
     s->walls.light_power = refs[WALL_LIGHT_PORT_POWER];
-    tyn_job_counters(g, job, &tyn_pass_wall_light, refs[WALL_LIGHT_PORT_POWER]);
 }
 
 // Second reflections, of what the VPLs send. In a periodic medium also sunlight: light from single points on walls knows

@@ -70,7 +70,6 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
     field->leaks = refs[LATTICE_PORT_LEAKS];
     field->wall_power =
         s->walls.around.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
-    tyn_job_counters(g, job, &tyn_pass_lattice, refs[LATTICE_PORT_COUNTERS]);
     field->cell = s->lattice.side;
     field->one_channel = s->lattice.shape.channels == 1;
     memcpy(field->tint, s->lattice.shape.tint, sizeof field->tint);

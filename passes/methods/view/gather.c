@@ -30,9 +30,6 @@ void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *i
     params.tms = s->sky.ordinates.resource != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_graph_add(g, &tyn_pass_scatter_lut, &params, refs);
-    if (params.tms) {
-        tyn_job_counters(g, job, &tyn_pass_scatter_lut, refs[SCATTER_LUT_PORT_COUNTERS]);
-    }
     in->tms = refs[SCATTER_LUT_PORT_TMS];
     in->lut = refs[SCATTER_LUT_PORT_LUT];
     in->lut_block = refs[SCATTER_LUT_PORT_LUT_BLOCK];
@@ -53,7 +50,6 @@ void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.tables = job->frame->phase_tables;
     tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = in->sources->sky.map};
     tyn_graph_add(g, &tyn_pass_env_glow, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_env_glow, refs[ENV_GLOW_PORT_COUNTERS]);
     in->glow = refs[ENV_GLOW_PORT_GLOW];
 }
 
@@ -98,6 +94,5 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         tyn_connect(refs, MERGE_PORT_SHADOW_ATLAS, s->shadows);
     }
     tyn_graph_add(g, &tyn_pass_merge, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_merge, refs[MERGE_PORT_COUNTERS]);
     in->inscatter = refs[MERGE_PORT_INSCATTER];
 }

@@ -206,7 +206,6 @@ tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_input
     tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[RAYMARCH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[RAYMARCH_PORT_MULTIPLE]);
-    tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
     return (tyn_picture){refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE],
                          refs[RAYMARCH_PORT_DEPTH]};
 }

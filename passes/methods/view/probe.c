@@ -22,7 +22,7 @@ static uint32_t points_outside(const tyn_job *job)
 
 // The node; its results.
 static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in,
-                         tyn_ref points, bool scattered_only, bool counted)
+                         tyn_ref points, bool scattered_only)
 {
     tyn_probe_params params;
     tyn_settings_params(job->settings, &tyn_pass_probe, &params);
@@ -54,9 +54,6 @@ static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs
     tyn_connect(refs, PROBE_PORT_WALL_LINKS, in->sources->walls.cut);
     tyn_connect(refs, PROBE_PORT_SHADOW_ATLAS, in->sources->shadows);
     tyn_graph_add(g, &tyn_pass_probe, &params, refs);
-    if (counted) {
-        tyn_job_counters(g, job, &tyn_pass_probe, refs[PROBE_PORT_COUNTERS]);
-    }
     return refs[PROBE_PORT_RESULTS];
 }
 
@@ -70,7 +67,7 @@ void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
                      outside, job->view->num_points);
     }
     tyn_job_output(g, job, TYN_OUTPUT_PROBE,
-                   add_probe(g, job, in, job->refs.points, job->view->scattered_only, true));
+                   add_probe(g, job, in, job->refs.points, job->view->scattered_only));
 }
 
 // A probe at every texel.
@@ -84,8 +81,7 @@ void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs
                                                    VK_FORMAT_R16G16B16A16_SFLOAT};
     tyn_ref refs[LIGHT_FIELD_NUM_PORTS] = {
         [LIGHT_FIELD_PORT_RESULTS] =
-            add_probe(g, job, in, places[LIGHT_POINTS_PORT_POINTS], !job->light->unscattered,
-                      !(job->outputs & TYN_OUTPUT_PROBE)),
+            add_probe(g, job, in, places[LIGHT_POINTS_PORT_POINTS], !job->light->unscattered),
         [LIGHT_FIELD_PORT_RED] = job->refs.light[0],
         [LIGHT_FIELD_PORT_GREEN] = job->refs.light[1],
         [LIGHT_FIELD_PORT_BLUE] = job->refs.light[2],

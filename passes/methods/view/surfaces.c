@@ -172,7 +172,6 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     tyn_connect(refs, SHADE_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, SHADE_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_shade, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_shade, refs[SHADE_PORT_COUNTERS]);
     in->surface = refs[SHADE_PORT_SURFACE_RADIANCE];
     in->distances = seen.distances;
 }

@@ -13,7 +13,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
                      sizeof(struct photon_light) * p->lobes * (uint64_t)n.x * n.y * n.z);
     tyn_build_image(b, PHOTON_CACHE_PORT_MOMENTS, (tyn_extent){n.x, n.y, n.z * p->shape.channels},
                     1);
-    tyn_build_buffer(b, PHOTON_CACHE_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
 
@@ -33,16 +32,10 @@ static void record(tyn_recorder *r, const void *params)
         .scaled = p->scaled,
         .cell_channels = p->shape.channels,
     };
-    tyn_rec_fill(r, PHOTON_CACHE_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_PHOTON_CACHE, .cells = {n.x * n.y * n.z, 1, 1}, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1});
     tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
 }
-
-static const tyn_counter counters[] = {
-    {"bounded", offsetof(struct counters_block, clamped)},
-    {NULL},
-};
 
 const tyn_pass_desc tyn_pass_photon_cache = {
     .name = "photon_cache",
@@ -50,5 +43,6 @@ const tyn_pass_desc tyn_pass_photon_cache = {
     TYN_PASS_TABLES(tyn_photon_cache_params),
     .debug_port = PHOTON_CACHE_PORT_MOMENTS,
     .debug_meaning = "fluence and net flux of cells",
-    .counters = counters,
+    TYN_COUNTS(PHOTON_CACHE_PORT_COUNTERS, struct counters_block,
+               {"bounded", offsetof(struct counters_block, clamped)}),
 };

@@ -82,7 +82,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       (int)p->generations, (unsigned)count_cells(p), PHOTON_MOST_BYTES >> 20);
         return TYN_ERR_PARAMS;
     }
-    tyn_build_buffer(b, PHOTON_TRACE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PHOTON_TRACE_PORT_PLAN, sizeof(struct photon_trace_plan));
     tyn_build_buffer(b, PHOTON_TRACE_PORT_GROUPS, 12 * TYN_PHOTON_DISPATCHES);
     return TYN_OK;
@@ -130,7 +129,6 @@ static void record(tyn_recorder *r, const void *params)
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = 0; // light is left at points that tracking examines
     spec[TYN_PATH_SPEC_FLAGS] &=
         ~(uint32_t)(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE | TYN_PATH_EMISSIVE);
-    tyn_rec_fill(r, PHOTON_TRACE_PORT_COUNTERS, 0);
     tyn_rec_update(r, PHOTON_TRACE_PORT_PLAN, 0, &plan, sizeof plan);
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1}, .args = &turn);
     TYN_DISPATCH(r, .kernel = KERNEL_CLEAR, .cells = {turn.quads, 1, 1}, .args = &turn);
@@ -188,13 +186,6 @@ static const tyn_param param_table[] = {
      firsts},
 };
 
-static const tyn_counter counters[] = {
-    {"steps", offsetof(struct counters_block, steps)},
-    TYN_COUNTER_NON_FINITE,
-    {"cut", offsetof(struct counters_block, cut)},
-    {NULL},
-};
-
 const tyn_pass_desc tyn_pass_photon_trace = {
     .name = "photon_trace",
     .summary = "photons of all lights, a few in each frame, and the cells that they pass",
@@ -202,6 +193,8 @@ const tyn_pass_desc tyn_pass_photon_trace = {
     TYN_SETTINGS(param_table),
     .debug_port = PHOTON_TRACE_PORT_COUNTERS,
     .debug_meaning = "points examined, photons cut",
-    .counters = counters,
+    TYN_COUNTS(PHOTON_TRACE_PORT_COUNTERS, struct counters_block,
+               {"steps", offsetof(struct counters_block, steps)}, TYN_COUNTER_NON_FINITE,
+               {"cut", offsetof(struct counters_block, cut)}),
     .settles = offsetof(tyn_photon_trace_params, settles),
 };

@@ -11,7 +11,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_extent n = tyn_build_extent(b, PHOTON_VIEW_PORT_FLUENCE);
     tyn_build_image(b, PHOTON_VIEW_PORT_INSCATTER,
                     (tyn_extent){n.x + 2, n.y + 2, n.z / p->lobes + 2}, 1);
-    tyn_build_buffer(b, PHOTON_VIEW_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
 
@@ -29,7 +28,6 @@ static void record(tyn_recorder *r, const void *params)
         .sky_is = p->sky ? PHOTON_LOBE_FLUX : PHOTON_LOBE_EVEN,
         .scaled = p->scaled,
     };
-    tyn_rec_fill(r, PHOTON_VIEW_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .cells = {n.x + 2, n.y + 2, n.z + 2}, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
 }
@@ -49,8 +47,6 @@ static const tyn_param param_table[] = {
      skies},
 };
 
-static const tyn_counter counters[] = {TYN_COUNTER_NON_FINITE, {NULL}};
-
 const tyn_pass_desc tyn_pass_photon_view = {
     .name = "photon_view",
     .summary = "what photons' light scatters towards the eye",
@@ -58,5 +54,5 @@ const tyn_pass_desc tyn_pass_photon_view = {
     TYN_SETTINGS(param_table),
     .debug_port = PHOTON_VIEW_PORT_INSCATTER,
     .debug_meaning = "light scattered towards the eye, per sigma_s",
-    .counters = counters,
+    TYN_COUNTS(PHOTON_VIEW_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

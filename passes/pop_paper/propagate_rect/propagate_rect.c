@@ -132,8 +132,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
              stacks = p->num_ordinates * p->channels;
     uint64_t numbers = (uint64_t)batch(p) * cells_of_grid(p);
     tyn_extent tiled = {cells * tiles, cells * ((stacks + tiles - 1) / tiles), along(p)};
-    uint64_t words =
-        PROPAGATE_FLIGHT_FIRST + (uint64_t)(p->threshold > 0 ? batches(p) * p->iterations : 0);
     tyn_extent small = small_of(p);
     tyn_build_buffer(b, PORT(GRIDS), p->num_ordinates * sizeof(struct propagate_grid));
     tyn_build_buffer(b, PORT(PLACES), TYN_ORDINATES_MAX * sizeof(struct propagate_place));
@@ -143,7 +141,10 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(SUM), numbers * sizeof(float));
-    tyn_build_buffer(b, PORT(FLIGHT), words * sizeof(uint32_t));
+    if (p->threshold > 0) {
+        const uint64_t words = PROPAGATE_FLIGHT_FIRST + (uint64_t)(batches(p) * p->iterations);
+        tyn_build_buffer(b, PORT(FLIGHT), words * sizeof(uint32_t));
+    }
     tyn_build_buffer(b, PORT(LAUNCHES), sizeof(struct propagate_launches));
     tyn_build_buffer(b, PORT(BESIDE), (p->cells_along ? numbers : 1) * sizeof(float));
     tyn_build_buffer(b, PORT(BESIDE_OTHER), (p->cells_along ? numbers : 1) * sizeof(float));
@@ -256,9 +257,7 @@ static void record(tyn_recorder *r, const void *data)
         .iterations = (uint32_t)p->iterations,
         .threshold = p->threshold,
     };
-    if (p->threshold > 0) {
-        tyn_rec_fill(r, PORT(FLIGHT), 0);
-    }
+    tyn_rec_fill(r, PORT(FLIGHT), 0);
     TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {
         record_shrink(r, p);
@@ -297,4 +296,5 @@ const tyn_pass_desc tyn_pass_propagate_rect = {
     .debug_port = PORT(SEEN),
     .debug_meaning = "radiance sent to the eye, middle of the aligned grids",
     .counters = counters,
+    .counter_port = PORT(FLIGHT),
 };

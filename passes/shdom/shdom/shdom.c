@@ -102,7 +102,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
         tyn_build_buffer(b, (uint8_t)(PORT(SENT_0) + ch), 4 * n * coefficients);
     }
     tyn_build_image(b, PORT(MOMENTS), texels, 1);
-    tyn_build_buffer(b, PORT(COUNTERS), sizeof(struct counters_block));
     tyn_build_buffer(b, PORT(DIRECTIONS), sizeof(float[4]) * ordinates);
     tyn_build_buffer(b, PORT(BASIS), sizeof(float) * coefficients * whole_groups(ordinates));
     tyn_build_buffer(b, PORT(WEIGHTED), sizeof(float) * coefficients * ordinates);
@@ -220,7 +219,6 @@ static void record(tyn_recorder *r, const void *data)
     float directions[SHDOM_MAX_ORDINATES][4];
     directions_of(p, directions);
     tyn_rec_update(r, PORT(DIRECTIONS), 0, directions, sizeof directions[0] * ordinates);
-    tyn_rec_fill(r, PORT(COUNTERS), 0);
     tyn_rec_fill(r, PORT(BASIS), 0);
     tyn_rec_fill(r, PORT(WEIGHTED), 0);
     tyn_rec_fill(r, PORT(SKY), 0);
@@ -261,5 +259,5 @@ const tyn_pass_desc tyn_pass_shdom = {
     TYN_SETTINGS(param_table),
     .debug_port = PORT(MOMENTS),
     .debug_meaning = "fluence and flux of the scattered light in a slice, W/m^2",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
+    TYN_COUNTS(PORT(COUNTERS), struct counters_block, TYN_COUNTER_NON_FINITE),
 };

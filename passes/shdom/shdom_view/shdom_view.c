@@ -23,7 +23,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
         return TYN_ERR_PARAMS;
     }
     tyn_build_image(b, PORT(INSCATTER), (tyn_extent){dims.x + 2, dims.y + 2, dims.z + 2}, 1);
-    tyn_build_buffer(b, PORT(COUNTERS), sizeof(struct counters_block));
     tyn_build_image(b, PORT(TOWARDS), dims, 1);
     tyn_build_image(b, PORT(EXTINCTION), dims, 1);
     tyn_build_image(b, PORT(SCATTERED), dims, 1);
@@ -43,21 +42,11 @@ static void record(tyn_recorder *r, const void *data)
                                          .num_suns = p->num_suns,
                                          .lamps = p->lamps};
     const uint32_t spec[4] = {p->mode, p->channels, p->grey, tyn_rec_has(r, PORT(ORDINATES))};
-    tyn_rec_fill(r, PORT(COUNTERS), 0);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args, .spec = spec);
     TYN_DISPATCH(r, .kernel = KERNEL_PEAKS, .cells = dims, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_STORE, .cells = size, .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
 }
-
-static const tyn_counter counters[] = {
-    TYN_COUNTER_NON_FINITE,
-    {"clamped", offsetof(struct counters_block, clamped)},
-    TYN_COUNTER_HIDDEN("of what cells scatter towards the eye",
-                       "accuracy: cells of the lattice would send negative light to the camera, "
-                       "which is set to 0: %g %% of what they send; the picture is brighter there"),
-    {NULL},
-};
 
 const tyn_pass_desc tyn_pass_shdom_view = {
     .name = "shdom_view",
@@ -66,5 +55,10 @@ const tyn_pass_desc tyn_pass_shdom_view = {
     TYN_PASS_TABLES(tyn_shdom_view_params),
     .debug_port = PORT(INSCATTER),
     .debug_meaning = "light towards the eye per sigma_s in a slice",
-    .counters = counters,
+    TYN_COUNTS(PORT(COUNTERS), struct counters_block, TYN_COUNTER_NON_FINITE,
+               {"clamped", offsetof(struct counters_block, clamped)},
+               TYN_COUNTER_HIDDEN(
+                   "of what cells scatter towards the eye",
+                   "accuracy: cells of the lattice would send negative light to the camera, "
+                   "which is set to 0: %g %% of what they send; the picture is brighter there")),
 };

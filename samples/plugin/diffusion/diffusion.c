@@ -30,7 +30,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     const uint64_t n = (uint64_t)texels.x * texels.y * texels.z;
     tyn_build_image(b, DIFFUSION_PORT_MOMENTS, texels, 1);
-    tyn_build_buffer(b, DIFFUSION_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, DIFFUSION_PORT_SYSTEM, 16 * n);
     tyn_build_buffer(b, DIFFUSION_PORT_FORWARD, 16 * n);
     tyn_build_buffer(b, DIFFUSION_PORT_FLUENCE, 4 * n);
@@ -55,7 +54,6 @@ static void record(tyn_recorder *r, const void *params)
         .first = 1,
         .lit = tyn_rec_has(r, DIFFUSION_PORT_ENVIRONMENT),
     };
-    tyn_rec_fill(r, DIFFUSION_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = SETUP, .cells = all, .args = &args);
     // The factor by which Jacobi's iteration converges without absorption; Chebyshev's sequence of omega goes with it.
     const double pi = 3.14159265358979, rho = cos(pi / (1 + fmax(dims.x, fmax(dims.y, dims.z))));
@@ -85,8 +83,6 @@ static const tyn_param table[] = {
      NULL},
 };
 
-static const tyn_counter counters[] = {TYN_COUNTER_NON_FINITE, {NULL}};
-
 const tyn_pass_desc pass_diffusion = {
     .name = "diffusion",
     .summary = "light that has scattered, by the diffusion approximation on the lattice",
@@ -96,5 +92,5 @@ const tyn_pass_desc pass_diffusion = {
     .num_params = TYN_COUNT(table),
     .debug_port = DIFFUSION_PORT_MOMENTS,
     .debug_meaning = "fluence and flux of the scattered light in a slice, W/m^2",
-    .counters = counters,
+    TYN_COUNTS(DIFFUSION_PORT_COUNTERS, struct counters_block, TYN_COUNTER_NON_FINITE),
 };

@@ -95,9 +95,6 @@ TYN_API uint32_t tyn_job_hooks_read(const tyn_job *job);
 
 // Gives the graph what was made for an output; nothing happens if it is not wanted.
 TYN_API void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref);
-// Has the buffer read back in which a pass counts (tyn_pass_desc.counters), for the report.
-TYN_API void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass,
-                              tyn_ref ref);
 
 // A line among the report's warnings.
 TYN_API void tyn_job_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
