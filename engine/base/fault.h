@@ -2,7 +2,7 @@
 #pragma once
 #include <tyndall/base.h>
 
-#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
+#define FAULT(...) return TYN_FAULT(log, TYN_ERR_PARAMS, __VA_ARGS__)
 
 // Returns the fault of a call, if there is one.
 #define TYN_TRY(call)                                                                              \

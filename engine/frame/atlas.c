@@ -83,12 +83,11 @@ tyn_result tyn_atlas_plan(tyn_atlas *atlas, const tyn_scene *scene, const tyn_lo
     stack(atlas, scene, false);
     atlas->extent.z += homogeneous ? 1 : 0;
     if (atlas->host && (scene->num_volumes != 1 || homogeneous)) {
-        tyn_log_print(
-            log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            log, TYN_ERR_UNSUPPORTED,
             "a host's density image must be the scene's only volume, and no medium may be "
             "homogeneous; the scene has %u volumes",
             scene->num_volumes);
-        return TYN_ERR_UNSUPPORTED;
     }
     return TYN_OK;
 }

@@ -13,11 +13,11 @@ static tyn_result refuse_outputs(const tyn_context *ctx, uint32_t missing)
     const bool no_probes = first == TYN_OUTPUT_LIGHT && !(method->outputs & TYN_OUTPUT_PROBE);
     char makers[256] = "";
     tyn_method_names(first, makers, sizeof makers);
-    tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'%s%s%s",
-                  method->name, tyn_output_name((tyn_output)first),
-                  no_probes ? ": it has no probes, of which the light field is made" : "",
-                  *makers ? "; these can: " : "", makers);
-    return TYN_ERR_PARAMS;
+    return TYN_FAULT(&ctx->dev->log, TYN_ERR_PARAMS,
+                     "method '%s' cannot make the output '%s'%s%s%s", method->name,
+                     tyn_output_name((tyn_output)first),
+                     no_probes ? ": it has no probes, of which the light field is made" : "",
+                     *makers ? "; these can: " : "", makers);
 }
 
 static tyn_result check_resume(const tyn_context *ctx, const tyn_view *view, uint32_t outputs)
@@ -54,9 +54,8 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
 {
     const tyn_log *log = &ctx->dev->log;
     if (!frame || frame->struct_size < sizeof *frame || !frame->scene || !frame->view) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "tyn_frame: scene and view are required (use the tyn_frame() macro)");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "tyn_frame: scene and view are required (use the tyn_frame() macro)");
     }
     const tyn_view *view = frame->view;
     uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;
@@ -74,8 +73,7 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
               (double)ctx->dev->image_bytes / (1 << 20));
     }
     if ((outputs & TYN_OUTPUT_PROBE) && (!view->points || !view->num_points)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "a probe needs at least one point");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "a probe needs at least one point");
     }
     tyn_frame_projection projection;
     TYN_TRY(tyn_frame_projection_find(&projection, frame, log));

@@ -22,14 +22,13 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
     if (!method) {
         char names[128];
         tyn_method_names(0, names, sizeof names);
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "method '%s' is not known; there are: %s",
-                      params->method, names);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "method '%s' is not known; there are: %s",
+                         params->method, names);
     }
     uint32_t slots = params->frames_in_flight ? params->frames_in_flight : 2;
     if (slots > 8) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "frames_in_flight is %u; it must be 1 to 8", slots);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "frames_in_flight is %u; it must be 1 to 8",
+                         slots);
     }
     tyn_context *ctx = calloc(1, sizeof *ctx);
     if (!ctx) {

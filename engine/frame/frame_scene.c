@@ -557,12 +557,11 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const bool *repeat = scene->shapes[i].repeat;
         if ((repeat[0] || repeat[1] || repeat[2]) && scene->num_shapes > 1) {
-            tyn_log_print(
-                log, TYN_LOG_ERROR,
+            return TYN_FAULT(
+                log, TYN_ERR_UNSUPPORTED,
                 "shape %u repeats, but the scene has %u shapes; a periodic medium must be "
                 "the only one",
                 i, scene->num_shapes);
-            return TYN_ERR_UNSUPPORTED;
         }
     }
     rigid m;

@@ -1,6 +1,7 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
 #include "base/clock.h"
+#include "base/fault.h"
 #include "frame/context.h"
 #include "frame/projection.h"
 #include "frame/submission.h"
@@ -46,9 +47,8 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
         return TYN_ERR_PARAMS;
     }
     if (!dev->queue) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "tyn_offline_create needs a device from tyn_device_open");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS,
+                         "tyn_offline_create needs a device from tyn_device_open");
     }
     tyn_offline *off = calloc(1, sizeof *off);
     if (!off) {
@@ -102,15 +102,11 @@ void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user)
 static tyn_result submit(tyn_offline *off, tyn_frame *frame)
 {
     frame->cmd = off->submission.cmd;
-    tyn_result result = tyn_submission_begin(&off->submission);
-    if (result == TYN_OK) {
-        result = tyn_context_record(off->context, frame);
-    }
-    if (result == TYN_OK) {
-        result = tyn_submission_run(&off->submission, "rendering a frame");
-        if (result != TYN_OK) {
-            tyn_context_forget(off->context);
-        }
+    TYN_TRY(tyn_submission_begin(&off->submission));
+    TYN_TRY(tyn_context_record(off->context, frame));
+    const tyn_result result = tyn_submission_run(&off->submission, "rendering a frame");
+    if (result != TYN_OK) {
+        tyn_context_forget(off->context);
     }
     return result;
 }

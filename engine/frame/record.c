@@ -38,8 +38,7 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
         return TYN_ERR_PARAMS;
     }
     if (!frame || !frame->cmd) {
-        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "tyn_frame: cmd is required");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&ctx->dev->log, TYN_ERR_PARAMS, "tyn_frame: cmd is required");
     }
     TYN_TRY(tyn_frame_declare(ctx, frame));
     TYN_TRY(tyn_frame_check_content(ctx, frame));
@@ -76,9 +75,8 @@ tyn_result tyn_context_light(const tyn_context *ctx, float world_to_texture[16])
         return TYN_ERR_PARAMS;
     }
     if (!(ctx->outputs & TYN_OUTPUT_LIGHT)) {
-        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR,
-                      "tyn_context_light: no frame with TYN_OUTPUT_LIGHT has been prepared");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&ctx->dev->log, TYN_ERR_PARAMS,
+                         "tyn_context_light: no frame with TYN_OUTPUT_LIGHT has been prepared");
     }
     for (int i = 0; i < 16; i++) {
         const float size = i % 4 < 3 ? ctx->frame.medium.extent[i % 4] : 1;

@@ -129,19 +129,17 @@ static tyn_result build_textures(tyn_surface_data *data, const tyn_surfaces *s, 
             total += (size_t)level_side(to->size[0], l) * level_side(to->size[1], l);
         }
         if (total > UINT32_MAX / 4) {
-            tyn_log_print(
-                log, TYN_LOG_ERROR,
+            return TYN_FAULT(
+                log, TYN_ERR_UNSUPPORTED,
                 "surfaces.textures[%u]: the textures up to this one take %.1f GiB; at most "
                 "4 are possible",
                 i, (double)total * 4 / (1u << 30));
-            return TYN_ERR_UNSUPPORTED;
         }
     }
     data->num_texels = total ? total : 1;
     data->texels = calloc(data->num_texels, sizeof *data->texels);
     if (!data->textures || !data->texels) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory for %zu texels of textures", total);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for %zu texels of textures", total);
     }
     float linear[256];
     decode_table(linear);
@@ -181,8 +179,7 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
         data->below = tyn_views_prepare(surfaces);
         data->seen = calloc(1, sizeof *data->seen);
         if (!data->below || !data->seen) {
-            tyn_log_print(log, TYN_LOG_ERROR, "no memory for %u nodes", surfaces->num_nodes);
-            result = TYN_ERR_MEMORY;
+            result = TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for %u nodes", surfaces->num_nodes);
         }
     }
     if (result != TYN_OK) {
@@ -191,9 +188,8 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
     }
     tyn_surfaces_bounds(surfaces, data->lo, data->hi);
     if (hash && !tyn_surfaces_most(surfaces, data->most_lo, data->most_hi)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory for the surfaces");
         tyn_surface_data_finish(data);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for the surfaces");
     }
     data->leaf.count = surfaces->num_triangles;
     memcpy(data->leaf.lo, data->lo, sizeof data->leaf.lo);

@@ -118,9 +118,9 @@ static tyn_result load_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
 #undef X
     }
     if (missing) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "get_instance_proc_addr does not know %s; Tyndall needs Vulkan 1.3", missing);
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
+                         "get_instance_proc_addr does not know %s; Tyndall needs Vulkan 1.3",
+                         missing);
     }
     if (dev->debug_names) {
 #define X(name) dev->vk.name = (PFN_vk##name)gipa(dev->instance, "vk" #name);
@@ -169,10 +169,9 @@ static tyn_result check_formats(const tyn_device *dev)
         VkFormatProperties p;
         dev->vk.GetPhysicalDeviceFormatProperties(dev->physical_device, formats[i].format, &p);
         if ((p.optimalTilingFeatures & formats[i].need) != formats[i].need) {
-            tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                          "device '%s' cannot filter or store images of format %s",
-                          dev->properties.deviceName, formats[i].name);
-            return TYN_ERR_UNSUPPORTED;
+            return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
+                             "device '%s' cannot filter or store images of format %s",
+                             dev->properties.deviceName, formats[i].name);
         }
     }
     return TYN_OK;
@@ -196,9 +195,8 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     dev->get_instance_proc_addr = gipa;
     TYN_TRY(load_procs(dev, gipa));
     if (pipelines->threads > TYN_MAX_COMPILE_THREADS) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "compile_threads is %u; it must be 0 to %d",
-                      pipelines->threads, TYN_MAX_COMPILE_THREADS);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "compile_threads is %u; it must be 0 to %d",
+                         pipelines->threads, TYN_MAX_COMPILE_THREADS);
     }
     dev->compiler = tyn_compiler_create(dev, pipelines->threads, pipelines->jobs);
     if (!dev->compiler) {
@@ -219,9 +217,9 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     uint32_t count = 0;
     dev->vk.GetPhysicalDeviceQueueFamilyProperties(dev->physical_device, &count, NULL);
     if (dev->queue_family >= count) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family is %u; the device has %u families",
-                      dev->queue_family, count);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS,
+                         "queue_family is %u; the device has %u families", dev->queue_family,
+                         count);
     }
     VkQueueFamilyProperties *families = calloc(count, sizeof *families);
     if (!families) {
@@ -233,9 +231,8 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     dev->timestamp_bits = family.timestampValidBits;
     dev->graphics = (family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     if (!(family.queueFlags & VK_QUEUE_COMPUTE_BIT)) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute",
-                      dev->queue_family);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "queue_family %u has no compute",
+                         dev->queue_family);
     }
     TYN_TRY(check_formats(dev));
 
@@ -305,30 +302,26 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
     }
     if (params->struct_size < sizeof *params || !params->instance || !params->physical_device ||
         !params->device || !params->get_instance_proc_addr) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "tyn_device_create: instance, physical_device, device and "
-                      "get_instance_proc_addr are required (use the tyn_device_params() macro)");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "tyn_device_create: instance, physical_device, device and "
+                         "get_instance_proc_addr are required (use the tyn_device_params() macro)");
     }
     if (params->api_version < VK_API_VERSION_1_3) {
-        tyn_log_print(log, TYN_LOG_ERROR, "tyn_device_create: api_version is %u.%u; 1.3 is needed",
-                      VK_API_VERSION_MAJOR(params->api_version),
-                      VK_API_VERSION_MINOR(params->api_version));
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(
+            log, TYN_ERR_UNSUPPORTED, "tyn_device_create: api_version is %u.%u; 1.3 is needed",
+            VK_API_VERSION_MAJOR(params->api_version), VK_API_VERSION_MINOR(params->api_version));
     }
     if (!params->allocator.allocate != !params->allocator.free) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "tyn_device_create: allocator.%s is NULL; give both or none",
-                      params->allocator.allocate ? "free" : "allocate");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "tyn_device_create: allocator.%s is NULL; give both or none",
+                         params->allocator.allocate ? "free" : "allocate");
     }
     const char *missing = tyn_missing_feature(params->features);
     if (missing) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "tyn_device_create: feature %s is not enabled on the device; "
-                      "tyn_requirements_get() lists what is needed",
-                      missing);
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(log, TYN_ERR_UNSUPPORTED,
+                         "tyn_device_create: feature %s is not enabled on the device; "
+                         "tyn_requirements_get() lists what is needed",
+                         missing);
     }
     tyn_device *dev = calloc(1, sizeof *dev);
     if (!dev) {

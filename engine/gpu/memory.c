@@ -91,9 +91,9 @@ static tyn_result fill_block(tyn_device *dev, tyn_block *block)
         block->allocation = (tyn_allocation){0};
     }
     if (made == VK_ERROR_OUT_OF_DEVICE_MEMORY || made == VK_ERROR_OUT_OF_HOST_MEMORY) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "out of device memory: %.1f MiB more were needed",
-                      (double)block->size / (1 << 20));
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(&dev->log, TYN_ERR_MEMORY,
+                         "out of device memory: %.1f MiB more were needed",
+                         (double)block->size / (1 << 20));
     }
     return tyn_vk_check(dev, made, "allocating device memory");
 }
@@ -131,8 +131,8 @@ tyn_result tyn_heap_place(const tyn_device *dev, tyn_heap *heap, const VkMemoryR
 {
     const int type = tyn_memory_type(dev, need->memoryTypeBits, kind);
     if (type < 0) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "the device has no memory type of kind %d", kind);
-        return TYN_ERR_DEVICE;
+        return TYN_FAULT(&dev->log, TYN_ERR_DEVICE, "the device has no memory type of kind %d",
+                         kind);
     }
     // Buffers and images may share a block: keep them a granularity page apart.
     const VkDeviceSize page = dev->properties.limits.bufferImageGranularity;

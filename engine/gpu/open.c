@@ -21,9 +21,8 @@ static tyn_result load_loader(void **loader, instance_procs *procs, const tyn_lo
     if (!procs->gipa) {
         *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
         if (!*loader) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "no Vulkan loader: %s; install it (Debian: libvulkan1)", dlerror());
-            return TYN_ERR_DEVICE;
+            return TYN_FAULT(log, TYN_ERR_DEVICE,
+                             "no Vulkan loader: %s; install it (Debian: libvulkan1)", dlerror());
         }
         *(void **)&procs->gipa = dlsym(*loader, "vkGetInstanceProcAddr");
     }
@@ -38,8 +37,7 @@ static tyn_result load_loader(void **loader, instance_procs *procs, const tyn_lo
     uint32_t version = 0;
     if (!procs->CreateInstance || !procs->EnumerateInstanceVersion ||
         procs->EnumerateInstanceVersion(&version) != VK_SUCCESS || version < VK_API_VERSION_1_3) {
-        tyn_log_print(log, TYN_LOG_ERROR, "the Vulkan loader is older than 1.3");
-        return TYN_ERR_DEVICE;
+        return TYN_FAULT(log, TYN_ERR_DEVICE, "the Vulkan loader is older than 1.3");
     }
     return TYN_OK;
 }
@@ -106,9 +104,8 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
 {
     static const char layer[] = "VK_LAYER_KHRONOS_validation";
     if (validation && !has_layer(procs, layer)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "validation was asked for, but %s is not installed",
-                      layer);
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(log, TYN_ERR_UNSUPPORTED,
+                         "validation was asked for, but %s is not installed", layer);
     }
     const VkDebugUtilsMessengerCreateInfoEXT messenger = describe_messenger(user);
     const VkValidationFeaturesEXT features = {
@@ -213,9 +210,9 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
         return tyn_vk_check(dev, listed, "vkEnumeratePhysicalDevices");
     }
     if (!count) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "no Vulkan device; a software one comes with Debian's mesa-vulkan-drivers");
-        return TYN_ERR_DEVICE;
+        return TYN_FAULT(
+            &dev->log, TYN_ERR_DEVICE,
+            "no Vulkan device; a software one comes with Debian's mesa-vulkan-drivers");
     }
     char *end = NULL;
     unsigned long index = select ? strtoul(select, &end, 10) : 0;
@@ -232,16 +229,14 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
         }
     }
     if (best < 0) {
-        tyn_log_print(
-            &dev->log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            &dev->log, TYN_ERR_PARAMS,
             "device '%s' is not there; the %u devices are listed by `tyndall info --devices`",
             select, count);
-        return TYN_ERR_PARAMS;
     }
     if (out->missing) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "device '%s' lacks %s", out->properties.deviceName,
-                      out->missing);
-        return TYN_ERR_DEVICE;
+        return TYN_FAULT(&dev->log, TYN_ERR_DEVICE, "device '%s' lacks %s",
+                         out->properties.deviceName, out->missing);
     }
     return TYN_OK;
 }

@@ -1,5 +1,6 @@
 // pipeline.c -- layouts and pipelines, derived from kernel tables. Who makes them when: compiler.c.
 #include "gpu/compiler.h"
+#include "base/fault.h"
 #include "gpu/specialize.h"
 #include <stdlib.h>
 #include <string.h>
@@ -110,11 +111,10 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++) {
         if (tests[i].over) {
-            tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                          "kernel '%s' of pass '%s' needs %u %s; the device '%s' has %u", k->name,
-                          pass->name, tests[i].wanted, tests[i].what, dev->properties.deviceName,
-                          tests[i].limit);
-            return TYN_ERR_UNSUPPORTED;
+            return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
+                             "kernel '%s' of pass '%s' needs %u %s; the device '%s' has %u",
+                             k->name, pass->name, tests[i].wanted, tests[i].what,
+                             dev->properties.deviceName, tests[i].limit);
         }
     }
     return TYN_OK;
@@ -170,16 +170,13 @@ tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t
     if (*out) {
         return TYN_OK;
     }
-    tyn_result result = check_limits(dev, pass, k);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(check_limits(dev, pass, k));
     tyn_pipeline *p = calloc(1, sizeof *p);
     if (!p) {
         return TYN_ERR_MEMORY;
     }
     *p = (tyn_pipeline){.compiler = dev->compiler, .pass = pass, .kernel = k};
-    result = create_layouts(dev, pass, p);
+    tyn_result result = create_layouts(dev, pass, p);
     if (result == TYN_OK) {
         *out = keep_pipeline(dev, p);
         result = *out ? TYN_OK : TYN_ERR_MEMORY;
@@ -206,11 +203,10 @@ tyn_result tyn_variant_get(tyn_pipeline *p, const uint32_t *spec, tyn_variant **
     const tyn_kernel *k = p->kernel;
     *out = NULL;
     if (k->raster && !dev->graphics) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "kernel '%s' draws surfaces: it needs a queue family with graphics, which "
-                      "family %u is not",
-                      k->name, dev->queue_family);
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
+                         "kernel '%s' draws surfaces: it needs a queue family with graphics, which "
+                         "family %u is not",
+                         k->name, dev->queue_family);
     }
     pthread_mutex_lock(&p->compiler->lock);
     tyn_variant *v = find_variant(p, spec);

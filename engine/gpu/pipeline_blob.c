@@ -100,12 +100,11 @@ tyn_result tyn_device_pipeline_cache(tyn_device *dev, void *blob, size_t *size)
     }
     *size = 0;
     if (room < sizeof(blob_header)) {
-        tyn_log_print(
-            &dev->log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            &dev->log, TYN_ERR_PARAMS,
             "tyn_device_pipeline_cache: %zu bytes are too few; a call with blob NULL tells "
             "how many it takes",
             room);
-        return TYN_ERR_PARAMS;
     }
     // Never more than there is: not every driver says how much it wrote.
     bytes = bytes < room - sizeof(blob_header) ? bytes : room - sizeof(blob_header);

@@ -1,4 +1,5 @@
 // record.c -- one frame: uploads, the nodes that must run, readbacks; then what happened.
+#include "base/fault.h"
 #include "graph/internal.h"
 #include "base/clock.h"
 #include <tyndall/extend/hash.h>
@@ -442,24 +443,21 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
         if (g->mode.background || g->mode.yields) {
             return graph_postpone(g, cmd);
         }
-        tyn_log_print(&g->dev->log, TYN_LOG_ERROR,
-                      "the frame differs in structure from what was prepared; prepare it first");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(&g->dev->log, TYN_ERR_PARAMS,
+                         "the frame differs in structure from what was prepared; prepare it first");
     }
     graph_retire_over(g);
     bool *run_node = g->run_node;
     frame_slot *slot = &g->slots[g->frame % g->num_slots];
     choose_nodes(g, run_node);
-    tyn_result result = make_sets(g, run_node);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(make_sets(g, run_node));
     collect_timestamps(g, slot);
     if (slot->queries) {
         g->dev->vk.CmdResetQueryPool(cmd, slot->queries, 0, g->num_nodes * 2);
     }
 
     tyn_recorder rec = {.g = g, .mode = RECORD_LIVE, .cmd = cmd};
+    tyn_result result = TYN_OK;
     wait_for_all(g, cmd);
     record_sources(&rec);
     for (uint32_t i = 0; i < g->num_nodes; i++) {

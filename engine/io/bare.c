@@ -67,8 +67,7 @@ static tyn_result add_sky(tyn_environment *env, const tyn_log *log)
                        nadir[3] = {0.012f, 0.02f, 0.036f};
     env->data = malloc(WIDTH * HEIGHT * 3 * sizeof *env->data);
     if (!env->data) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory for the sky");
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for the sky");
     }
     for (int y = 0; y < HEIGHT; y++) {
         float up = cosf(3.14159265f * ((float)y + 0.5f) / HEIGHT);
@@ -92,11 +91,10 @@ static tyn_result place(tyn_shape *shape, const tyn_volume *volume, const tyn_lo
     double m[16];
     tyn_grid_box(m, volume->index_to_world, volume->size);
     if (!mat_invertible(m)) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: its index-to-world transform must be affine and invertible, its "
-                      "determinant is %g",
-                      volume->name ? volume->name : "volume", mat_det3(m));
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: its index-to-world transform must be affine and invertible, its "
+                         "determinant is %g",
+                         volume->name ? volume->name : "volume", mat_det3(m));
     }
     *shape = (tyn_shape){.kind = TYN_SHAPE_BOX, .medium = 0};
     for (int i = 0; i < 16; i++) {

@@ -79,10 +79,8 @@ static bool is_fit(const tyn_temperature *t, const tyn_log *log)
                    {"luminance", t->luminance, 0}};
     for (int i = 0; i < 4; i++) {
         if (!isfinite(numbers[i].value) || numbers[i].value < numbers[i].least) {
-            tyn_log_print(log, TYN_LOG_ERROR, "temperature: %s = %g: must be finite%s",
-                          numbers[i].name, numbers[i].value,
-                          numbers[i].least == 0 ? " and >= 0" : "");
-            return false;
+            return TYN_FAULT(log, false, "temperature: %s = %g: must be finite%s", numbers[i].name,
+                             numbers[i].value, numbers[i].least == 0 ? " and >= 0" : "");
         }
     }
     return true;
@@ -101,9 +99,8 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
     for (size_t i = 0; i < count; i++) {
         const double given = values[i] * scale + how->offset, kelvins = fmax(given, COLDEST);
         if (!isfinite(given)) {
-            tyn_log_print(log, TYN_LOG_ERROR, "temperature %g of value %zu: must be finite",
-                          (double)values[i], i);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS, "temperature %g of value %zu: must be finite",
+                             (double)values[i], i);
         }
         least = fmin(least, kelvins);
         most = fmax(most, kelvins);
@@ -115,10 +112,9 @@ tyn_result tyn_color_grid_of_temperatures(tyn_color_grid *colors, const uint32_t
     const double step = fmax(octaves / steps, 1e-12);
     float(*table)[3] = malloc(((size_t)steps + 1) * sizeof *table);
     if (!colors->data || !table) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory for the radiance of %zu voxels", count);
         free(table);
         tyn_color_grid_finish(colors);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for the radiance of %zu voxels", count);
     }
     for (int i = 0; i <= steps; i++) {
         radiance_of(least * exp2(i * step), how, table[i]);

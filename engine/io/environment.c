@@ -32,14 +32,12 @@ static tyn_result paste(uint32_t size[2], float **pixels, const tyn_image_file *
     const int64_t x0 = part ? image->x : 0, y0 = part ? image->y : 0;
     if (h < 1 || w > TYN_MAX_IMAGE_SIDE || h > TYN_MAX_IMAGE_SIDE ||
         (uint64_t)w * h > TYN_MAX_PIXELS) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: a display window of %u x %u pixels is too large",
-                      path, w, h);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: a display window of %u x %u pixels is too large",
+                         path, w, h);
     }
     *pixels = calloc((size_t)w * h, 3 * sizeof **pixels);
     if (!*pixels) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its pixels", path);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for its pixels", path);
     }
     size_t pasted = 0;
     for (uint32_t y = 0; y < image->height; y++) {
@@ -80,15 +78,13 @@ static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, c
         rgb[0] = rgb[1] = rgb[2] = grey;
     }
     if (!rgb[0] || !rgb[1] || !rgb[2]) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: an environment needs channels R, G, B, or Y alone",
+        r = TYN_FAULT(log, TYN_ERR_PARAMS, "%s: an environment needs channels R, G, B, or Y alone",
                       path);
-        r = TYN_ERR_PARAMS;
     } else if (kind && kind->kind == TYN_ATTRIBUTE_INTEGER && kind->values[0] != 0) {
-        tyn_log_print(log, TYN_LOG_ERROR,
+        r = TYN_FAULT(log, TYN_ERR_PARAMS,
                       "%s: is a map of a cube's faces: must be one of latitude and longitude "
                       "(exrenvmap of OpenEXR makes one)",
                       path);
-        r = TYN_ERR_PARAMS;
     } else {
         r = paste(size, pixels, &image, rgb, path, log);
     }
@@ -116,8 +112,8 @@ static tyn_result refine_small(uint32_t size[2], float **pixels, const tyn_log *
     }
     float *fine = malloc(3 * sizeof(float) * w * h);
     if (!fine) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory for an environment of %u x %u texels", w, h);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory for an environment of %u x %u texels", w,
+                         h);
     }
     for (uint32_t y = 0; y < h; y++) {
         const float v = ((float)y + 0.5f) / (float)times[1] - 0.5f; // clamped
@@ -156,9 +152,8 @@ tyn_result tyn_environment_load(tyn_environment *env, const char *path, const ty
     } else if (dot && strcasecmp(dot, ".exr") == 0) {
         r = load_exr(size, &pixels, path, log);
     } else {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: unknown kind of environment: must be .exr or .hdr",
-                      path);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: unknown kind of environment: must be .exr or .hdr", path);
     }
     size_t count = r ? 0 : 3 * (size_t)size[0] * size[1], negative = 0;
     for (size_t i = 0; i < count; i++) {

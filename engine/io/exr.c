@@ -177,17 +177,15 @@ static tyn_result add_channels(picture *p, const char *file, const tyn_log *log)
     const exr_attr_chlist_t *list;
     size_t pixels = (size_t)p->image->width * p->image->height;
     if (exr_get_channels(p->context, 0, &list) != EXR_ERR_SUCCESS || list->num_channels > 1024) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has no list of at most 1024 channels", file);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: has no list of at most 1024 channels", file);
     }
     p->image->channels = calloc((size_t)list->num_channels + 1, sizeof *p->image->channels);
     for (int c = 0; p->image->channels && c < list->num_channels; c++) {
         const exr_attr_chlist_entry_t *entry = &list->entries[c];
         if (entry->x_sampling != 1 || entry->y_sampling != 1) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "%s: channel \"%.47s\" is subsampled: must have every pixel", file,
-                          entry->name.str);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS,
+                             "%s: channel \"%.47s\" is subsampled: must have every pixel", file,
+                             entry->name.str);
         }
         if ((entry->pixel_type != EXR_PIXEL_HALF && entry->pixel_type != EXR_PIXEL_FLOAT) ||
             (size_t)entry->name.length >= sizeof p->image->channels->name ||
@@ -198,14 +196,12 @@ static tyn_result add_channels(picture *p, const char *file, const tyn_log *log)
         snprintf(channel->name, sizeof channel->name, "%s", entry->name.str);
         channel->data = calloc(pixels, sizeof *channel->data);
         if (!channel->data) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its %zu pixels", file, pixels);
-            return TYN_ERR_MEMORY;
+            return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for its %zu pixels", file, pixels);
         }
         p->image->num_channels++;
     }
     if (p->image->num_channels == 0) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has no half or float channel", file);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: has no half or float channel", file);
     }
     return TYN_OK;
 }
@@ -217,8 +213,7 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     int parts = 0;
     exr_result_t e = exr_get_count(p->context, &parts);
     if (e == EXR_ERR_SUCCESS && parts != 1) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %d parts: must have one", file, parts);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: has %d parts: must have one", file, parts);
     }
     e = e != EXR_ERR_SUCCESS ? e : exr_get_storage(p->context, 0, &storage);
     e = e != EXR_ERR_SUCCESS ? e : exr_get_data_window(p->context, 0, &window);
@@ -226,8 +221,7 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
         return report(s, e, file, log);
     }
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: holds deep data: must be a flat image", file);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: holds deep data: must be a flat image", file);
     }
     int64_t width = (int64_t)window.max.x - window.min.x + 1;
     int64_t height = (int64_t)window.max.y - window.min.y + 1;
@@ -235,10 +229,9 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     if (width < 1 || height < 1 || width > TYN_MAX_IMAGE_SIDE || height > TYN_MAX_IMAGE_SIDE ||
         (uint64_t)(width * height) > TYN_MAX_PIXELS ||
         (uint64_t)(width * height) / 8192 > s->size) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: an image of %lld x %lld pixels in %llu bytes cannot be", file,
-                      (long long)width, (long long)height, (unsigned long long)s->size);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: an image of %lld x %lld pixels in %llu bytes cannot be", file,
+                         (long long)width, (long long)height, (unsigned long long)s->size);
     }
     p->image->width = (uint32_t)width;
     p->image->height = (uint32_t)height;
@@ -259,8 +252,7 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     }
     p->unread = malloc((size_t)width * sizeof(float));
     if (!p->unread) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to read it", file);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory to read it", file);
     }
     e = read_chunks(p, storage == EXR_STORAGE_TILED);
     return e == EXR_ERR_SUCCESS ? TYN_OK : report(s, e, file, log);
@@ -472,16 +464,14 @@ tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool ful
     }
     for (uint32_t i = 0; i < image->num_channels; i++) {
         if (!image->channels[i].data) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s: channel '%s' has no data", path,
-                          image->channels[i].name);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: channel '%s' has no data", path,
+                             image->channels[i].name);
         }
     }
     if (image->num_channels == 0 || pixels == 0) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: an image of %u x %u pixels, %u channels: must be > 0", path,
-                      image->width, image->height, image->num_channels);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: an image of %u x %u pixels, %u channels: must be > 0", path,
+                         image->width, image->height, image->num_channels);
     }
     tyn_result r = TYN_OK;
     void **data = calloc(image->num_channels, sizeof *data);
@@ -492,8 +482,7 @@ tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool ful
         r = data[i] ? TYN_OK : TYN_ERR_MEMORY;
     }
     if (!data || r) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to write it", path);
-        r = TYN_ERR_MEMORY;
+        r = TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory to write it", path);
     } else {
         exr_result_t e = write_picture(&context, image, data, full_float, &s, path);
         exr_result_t f = context ? exr_finish(&context) : EXR_ERR_SUCCESS; // writes the offsets

@@ -39,9 +39,8 @@ static int open_regular(const char *path, uint64_t limit, uint64_t *size, tyn_re
         tyn_log_print(log, TYN_LOG_ERROR, "%s: is %s: must be a regular file", path,
                       kind_of(info.st_mode));
     } else if (*size > limit) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %llu bytes, at most %llu are read", path,
-                      (unsigned long long)*size, (unsigned long long)limit);
-        *result = TYN_ERR_PARAMS;
+        *result = TYN_FAULT(log, TYN_ERR_PARAMS, "%s: has %llu bytes, at most %llu are read", path,
+                            (unsigned long long)*size, (unsigned long long)limit);
     } else {
         *result = TYN_OK;
         return fd;
@@ -82,18 +81,16 @@ tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *
     }
     char *bytes = malloc((size_t)length + 1);
     if (!bytes) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its %llu bytes", path,
-                      (unsigned long long)length);
         close(fd);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for its %llu bytes", path,
+                         (unsigned long long)length);
     }
     size_t got = read_all(fd, bytes, (size_t)length);
     close(fd);
     if (got != length) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: only %zu of %llu bytes could be read", path, got,
-                      (unsigned long long)length);
         free(bytes);
-        return TYN_ERR_IO;
+        return TYN_FAULT(log, TYN_ERR_IO, "%s: only %zu of %llu bytes could be read", path, got,
+                         (unsigned long long)length);
     }
     bytes[length] = 0; // text may be read as a string
     *data = bytes;
@@ -116,8 +113,7 @@ tyn_result tyn_file_map(const char *path, uint64_t limit, const void **bytes, si
     int error = errno;
     close(fd);
     if (mapping == MAP_FAILED) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be read: %s", path, strerror(error));
-        return TYN_ERR_IO;
+        return TYN_FAULT(log, TYN_ERR_IO, "%s: cannot be read: %s", path, strerror(error));
     }
     *bytes = mapping;
     return TYN_OK;

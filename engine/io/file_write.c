@@ -185,10 +185,8 @@ tyn_result tyn_file_write(const char *path, const void *data, size_t size, const
     char *file = follow(path);
     const int error = file ? put(file, data, size) : errno;
     free(file);
-    if (error) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be written: %s", path, strerror(error));
-    }
-    return error ? TYN_ERR_IO : TYN_OK;
+    return error ? TYN_FAULT(log, TYN_ERR_IO, "%s: cannot be written: %s", path, strerror(error))
+                 : TYN_OK;
 }
 
 // ---- before the work --------------------------------------------------------------------------

@@ -34,10 +34,7 @@ static tyn_result check_kind(const uint8_t *bytes, size_t size, const char *file
     } else if (size >= 2 && memcmp(bytes, "PK", 2) == 0) {
         is = "a zip archive, not glTF: unpack it";
     }
-    if (is) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: is %s", file, is);
-    }
-    return is ? TYN_ERR_PARAMS : TYN_OK;
+    return is ? TYN_FAULT(log, TYN_ERR_PARAMS, "%s: is %s", file, is) : TYN_OK;
 }
 
 // The chunk behind the JSON of a binary file.
@@ -50,10 +47,9 @@ static tyn_result find_binary(gltf_container *c, const uint8_t *bytes, uint64_t 
     }
     const uint64_t chunk = at + 8 <= total ? tyn_load(bytes + at, 4) : UINT64_MAX;
     if (chunk > total - at - 8 || memcmp(bytes + at + 4, "BIN", 4) != 0) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: binary glTF: the %llu bytes behind its JSON are no chunk of type BIN",
-                      file, (unsigned long long)(total - at));
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: binary glTF: the %llu bytes behind its JSON are no chunk of type BIN",
+                         file, (unsigned long long)(total - at));
     }
     c->binary = (gltf_buffer){.data = bytes + at + 8, .size = (size_t)chunk};
     return TYN_OK;
@@ -67,22 +63,21 @@ tyn_result tyn_gltf_open(gltf_container *out, const uint8_t *bytes, size_t size,
                             .json_size = size,
                             .glb = size >= 4 && memcmp(bytes, "glTF", 4) == 0};
     if (size > 0x7fffffff) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %zu bytes, at most 2 GiB are read", file, size);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: has %zu bytes, at most 2 GiB are read", file,
+                         size);
     }
     if (!out->glb) {
         return TYN_OK;
     }
     if (size < 20 || tyn_load(bytes + 4, 4) != 2) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: not a binary glTF of version 2", file);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: not a binary glTF of version 2", file);
     }
     uint64_t total = tyn_load(bytes + 8, 4), chunk = tyn_load(bytes + 12, 4);
     if (total > size || 20 + chunk > total || memcmp(bytes + 16, "JSON", 4) != 0) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: binary glTF of %llu bytes with %llu bytes of JSON, but the file has %zu",
-                      file, (unsigned long long)total, (unsigned long long)chunk, size);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            log, TYN_ERR_PARAMS,
+            "%s: binary glTF of %llu bytes with %llu bytes of JSON, but the file has %zu", file,
+            (unsigned long long)total, (unsigned long long)chunk, size);
     }
     out->json = (const char *)bytes + 20;
     out->json_size = (size_t)chunk;

@@ -118,12 +118,11 @@ int tyn_volume_choose(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t c
         return chosen;
     }
     if (chosen >= 0) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "%s: grid \"%.100s\" holds %s values: must be float, half or quantised "
-                      "float%s",
-                      file, grids[chosen].name, grids[chosen].type,
-                      job->use == TYN_GRID_COLOR ? ", or vectors of three floats" : "");
-        return -1;
+        return TYN_FAULT(job->log, -1,
+                         "%s: grid \"%.100s\" holds %s values: must be float, half or quantised "
+                         "float%s",
+                         file, grids[chosen].name, grids[chosen].type,
+                         job->use == TYN_GRID_COLOR ? ", or vectors of three floats" : "");
     }
     char list[512] = "";
     bool any = false;
@@ -132,16 +131,16 @@ int tyn_volume_choose(tyn_grid_job *job, const tyn_grid_entry *grids, uint32_t c
         any |= grids[i].scalar;
     }
     if (job->grid) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no grid \"%.100s\": there are %s", file,
-                      job->grid, count ? list : "none");
-    } else if (any) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "%s: no grid that is a density by its name: there are %s; name the one that "
-                      "is, as \"grid\" of a scene's density",
-                      file, list);
-    } else {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no grid of float values: there are %s", file,
-                      count ? list : "none");
+        return TYN_FAULT(job->log, -1, "%s: no grid \"%.100s\": there are %s", file, job->grid,
+                         count ? list : "none");
     }
-    return -1;
+    if (any) {
+        return TYN_FAULT(
+            job->log, -1,
+            "%s: no grid that is a density by its name: there are %s; name the one that "
+            "is, as \"grid\" of a scene's density",
+            file, list);
+    }
+    return TYN_FAULT(job->log, -1, "%s: no grid of float values: there are %s", file,
+                     count ? list : "none");
 }

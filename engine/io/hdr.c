@@ -16,9 +16,8 @@ typedef struct reader {
 
 static tyn_result fault(const reader *r, const char *what)
 {
-    tyn_log_print(r->log, TYN_LOG_ERROR, "%s: not a Radiance picture that can be read: %s", r->file,
-                  what);
-    return TYN_ERR_PARAMS;
+    return TYN_FAULT(r->log, TYN_ERR_PARAMS, "%s: not a Radiance picture that can be read: %s",
+                     r->file, what);
 }
 
 // The next line of the header without its newline; false at the end of the file.
@@ -179,9 +178,8 @@ tyn_result tyn_hdr_parse(uint32_t size[2], float **pixels, const void *bytes, si
     float *out = malloc((size_t)size[0] * size[1] * 3 * sizeof *out);
     uint8_t *line = malloc((size_t)size[0] * 4);
     if (!out || !line) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for %u x %u pixels", file, size[0],
-                      size[1]);
-        result = TYN_ERR_MEMORY;
+        result = TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for %u x %u pixels", file, size[0],
+                           size[1]);
     }
     for (uint32_t y = 0; !result && y < size[1]; y++) {
         if (!read_line(&r, line, size[0])) {

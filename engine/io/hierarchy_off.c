@@ -10,9 +10,8 @@ tyn_result tyn_surfaces_build_nodes(tyn_surfaces *surfaces, const tyn_log *log)
     if (!surfaces->num_triangles) {
         return TYN_OK;
     }
-    tyn_log_print(
-        log, TYN_LOG_ERROR,
+    return TYN_FAULT(
+        log, TYN_ERR_UNSUPPORTED,
         "this build cannot trace rays against surfaces: build with -Dembree=enabled (needs "
         "Embree 3), or use a method that rasterises them (--method pop)");
-    return TYN_ERR_UNSUPPORTED;
 }

@@ -75,8 +75,7 @@ tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *form
 
 tyn_result tyn_json_no_memory(const json_doc *doc, const char *what)
 {
-    tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, what);
-    return TYN_ERR_MEMORY;
+    return TYN_FAULT(doc->log, TYN_ERR_MEMORY, "%s: no memory for its %s", doc->file, what);
 }
 
 // ---- parsing --------------------------------------------------------------------------------
@@ -143,14 +142,12 @@ tyn_result tyn_json_parse(json_doc *doc, const char *text, size_t size, const ch
     const char *end = NULL;
     *doc = (json_doc){.file = file, .log = log};
     if (too_deep(text, size)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: JSON is nested deeper than %d", file, MAX_DEPTH);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: JSON is nested deeper than %d", file, MAX_DEPTH);
     }
     doc->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
     if (!doc->root) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: not valid JSON, line %d", file,
-                      line_of(text, end && end >= text && end <= text + size ? end : text));
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: not valid JSON, line %d", file,
+                         line_of(text, end && end >= text && end <= text + size ? end : text));
     }
     while (end < text + size && (*end == ' ' || *end == '\t' || *end == '\r' || *end == '\n')) {
         end++;

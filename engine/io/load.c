@@ -54,9 +54,8 @@ static tyn_result load(tyn_scene *scene, const char *path, const char *environme
         return TYN_ERR_PARAMS;
     }
     if (moment && moment->timed && !isfinite(moment->seconds)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: a time of %g s: must be finite", path,
-                      moment->seconds);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: a time of %g s: must be finite", path,
+                         moment->seconds);
     }
     if (tyn_is_gltf(path)) {
         return load_gltf(scene, path, environment, moment, log);
@@ -64,9 +63,9 @@ static tyn_result load(tyn_scene *scene, const char *path, const char *environme
     if (tyn_is_volume(path)) {
         return load_bare(scene, path, environment, log);
     }
-    tyn_log_print(log, TYN_LOG_ERROR,
-                  "%s: unknown kind of scene: must be one of .gltf, .glb" TYN_VOLUME_ENDINGS, path);
-    return TYN_ERR_PARAMS;
+    return TYN_FAULT(log, TYN_ERR_PARAMS,
+                     "%s: unknown kind of scene: must be one of .gltf, .glb" TYN_VOLUME_ENDINGS,
+                     path);
 }
 
 tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,

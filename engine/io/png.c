@@ -16,16 +16,14 @@ tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height, uint
     }
     if (width == 0 || height == 0 || width > 65536 || height > 65536 ||
         (channels != 3 && channels != 4)) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: %u x %u pixels, %u channels: must be 1 to 65536 with 3 or 4 channels",
-                      path, width, height, channels);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: %u x %u pixels, %u channels: must be 1 to 65536 with 3 or 4 channels",
+                         path, width, height, channels);
     }
     size_t size = 0;
     uint8_t *file = tyn_picture_encode(pixels, width, height, channels, &size);
     if (!file) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to write it", path);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory to write it", path);
     }
     tyn_result r = tyn_file_write(path, file, size, log);
     free(file);
@@ -51,8 +49,7 @@ tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uin
     *width = decoded[0];
     *height = decoded[1];
     if (!*rgba) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: must be a PNG picture: %s", path, reason);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: must be a PNG picture: %s", path, reason);
     }
     return TYN_OK;
 }

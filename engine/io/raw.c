@@ -18,13 +18,12 @@ tyn_result tyn_raw_read(tyn_grid_job *job, const void *bytes, size_t num_bytes,
     job->channels = channels;
     uint64_t values = (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2] * channels;
     if (num_bytes != values * widths[type]) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "%s: has %zu bytes, a grid of %lld x %lld x %lld %s%s values has %llu", file,
-                      num_bytes, (long long)size[0], (long long)size[1], (long long)size[2],
-                      channels == 3 ? "triples of " : "", names[type],
-                      (unsigned long long)(values * widths[type]));
         tyn_volume_finish(volume);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                         "%s: has %zu bytes, a grid of %lld x %lld x %lld %s%s values has %llu",
+                         file, num_bytes, (long long)size[0], (long long)size[1],
+                         (long long)size[2], channels == 3 ? "triples of " : "", names[type],
+                         (unsigned long long)(values * widths[type]));
     }
     for (uint64_t i = 0; i < values; i++, p += widths[type]) {
         uint32_t word;

@@ -3,9 +3,8 @@
 
 tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
 {
-    tyn_log_print(job->log, TYN_LOG_ERROR,
-                  "%s: this build cannot read .vdb files: build with -Dopenvdb=enabled (needs "
-                  "OpenVDB), or convert the file to .nvdb",
-                  path);
-    return TYN_ERR_UNSUPPORTED;
+    return TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
+                     "%s: this build cannot read .vdb files: build with -Dopenvdb=enabled (needs "
+                     "OpenVDB), or convert the file to .nvdb",
+                     path);
 }

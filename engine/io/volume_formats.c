@@ -39,15 +39,13 @@ tyn_result tyn_grid_read(tyn_grid_job *job, const char *path)
     }
     const char *dot = strrchr(path, '.');
     if (dot && strcasecmp(dot, ".raw") == 0) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "%s: a .raw file does not say its size: give \"size\" and \"type\" in a "
-                      "glTF scene",
-                      path);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                         "%s: a .raw file does not say its size: give \"size\" and \"type\" in a "
+                         "glTF scene",
+                         path);
     }
-    tyn_log_print(job->log, TYN_LOG_ERROR,
-                  "%s: unknown kind of volume: must be one of .raw" TYN_VOLUME_ENDINGS, path);
-    return TYN_ERR_PARAMS;
+    return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                     "%s: unknown kind of volume: must be one of .raw" TYN_VOLUME_ENDINGS, path);
 }
 
 tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,

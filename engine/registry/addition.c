@@ -2,7 +2,7 @@
 #include "registry/addition.h"
 #include <string.h>
 
-#define REFUSE(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), false)
+#define REFUSE(...) return TYN_FAULT(log, false, __VA_ARGS__)
 
 #define LENGTH(list, count)                                                                        \
     for (count = 0; (list) && (list)[count]; count++) {                                            \

@@ -56,8 +56,7 @@ static tyn_result add(const tyn_plugin *p, const char *path, const char *who, co
         }
     }
     if (count == MAX_PLUGINS) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: %d plugins are the most", who, MAX_PLUGINS);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "%s: %d plugins are the most", who, MAX_PLUGINS);
     }
     char *copy = strdup(path);
     if (!copy) {
@@ -81,24 +80,21 @@ static tyn_result add(const tyn_plugin *p, const char *path, const char *who, co
 static bool check_abi(const tyn_plugin *p, const char *who, const tyn_log *log)
 {
     if (p->abi != TYN_EXTEND_ABI) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s is built for ABI %u (Tyndall %u.%u.%u); this is ABI %u (Tyndall %s): "
-                      "build it against the headers of this one",
-                      who, p->abi, p->version / 1000, p->version / 10 % 100, p->version % 10,
-                      TYN_EXTEND_ABI, tyn_version_string());
-        return false;
+        return TYN_FAULT(log, false,
+                         "%s is built for ABI %u (Tyndall %u.%u.%u); this is ABI %u (Tyndall %s): "
+                         "build it against the headers of this one",
+                         who, p->abi, p->version / 1000, p->version / 10 % 100, p->version % 10,
+                         TYN_EXTEND_ABI, tyn_version_string());
     }
     if (p->layout != TYN_EXTEND_LAYOUT) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s is built for ABI %u with structs of other sizes than here (%08x, %08x): "
-                      "build it against the headers of this library",
-                      who, p->abi, p->layout, TYN_EXTEND_LAYOUT);
-        return false;
+        return TYN_FAULT(
+            log, false,
+            "%s is built for ABI %u with structs of other sizes than here (%08x, %08x): "
+            "build it against the headers of this library",
+            who, p->abi, p->layout, TYN_EXTEND_LAYOUT);
     }
     if (!p->name || !p->summary || !p->calls) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: it must have a name and a summary (TYN_PLUGIN)",
-                      who);
-        return false;
+        return TYN_FAULT(log, false, "%s: it must have a name and a summary (TYN_PLUGIN)", who);
     }
     return true;
 }
@@ -115,8 +111,7 @@ tyn_result tyn_plugin_load(const char *path, const tyn_log *log)
     void *object = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     if (!object) {
         const char *why = dlerror();
-        tyn_log_print(log, TYN_LOG_ERROR, "%s cannot be loaded: %s", who, why ? why : "unknown");
-        return TYN_ERR_IO;
+        return TYN_FAULT(log, TYN_ERR_IO, "%s cannot be loaded: %s", who, why ? why : "unknown");
     }
     const tyn_plugin *plugin = dlsym(object, "tyn_plugin_entry");
     tyn_result result = TYN_ERR_PARAMS;

@@ -202,9 +202,8 @@ static bool check_passes(const tyn_addition *a, const char *what, const char *na
 {
     for (uint32_t i = 0; names && names[i]; i++) {
         if (!find_with(a, names[i])) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s: %s '%s' names the pass '%s', which is not there",
-                          a->who, what, name, names[i]);
-            return false;
+            return TYN_FAULT(log, false, "%s: %s '%s' names the pass '%s', which is not there",
+                             a->who, what, name, names[i]);
         }
     }
     return true;
@@ -241,10 +240,9 @@ static bool check_names(const tyn_addition *a, const tyn_log *log)
                atomic_load(&num_methods) + a->num_methods > MAX_METHODS ||
                atomic_load(&num_hooks) + a->num_hooks > MAX_HOOKS ||
                num_named + count_listed(a) > MAX_NAMED) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: more than %d passes, %d methods or %d hooks in one process", a->who,
-                      MAX_PASSES, MAX_METHODS, MAX_HOOKS);
-        return false;
+        return TYN_FAULT(log, false,
+                         "%s: more than %d passes, %d methods or %d hooks in one process", a->who,
+                         MAX_PASSES, MAX_METHODS, MAX_HOOKS);
     }
     return !clash;
 }

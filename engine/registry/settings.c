@@ -133,18 +133,16 @@ static const tyn_param *find_param(const char *name, const tyn_pass_desc **pass,
     char list[512], pass_name[64];
     const char *dot = strchr(name, '.');
     if (!dot || (size_t)(dot - name) >= sizeof pass_name) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "setting '%s': write pass.param=value, as lattice.cells=32", name);
-        return NULL;
+        return TYN_FAULT(log, NULL, "setting '%s': write pass.param=value, as lattice.cells=32",
+                         name);
     }
     memcpy(pass_name, name, (size_t)(dot - name));
     pass_name[dot - name] = 0;
     *pass = tyn_pass_find(pass_name);
     if (!*pass) {
         list_names(list, sizeof list, NULL);
-        tyn_log_print(log, TYN_LOG_ERROR, "setting '%s': there is no pass '%s'; there are: %s",
-                      name, pass_name, list);
-        return NULL;
+        return TYN_FAULT(log, NULL, "setting '%s': there is no pass '%s'; there are: %s", name,
+                         pass_name, list);
     }
     for (uint32_t i = 0; i < (*pass)->num_params; i++) {
         if (!strcmp((*pass)->params[i].name, dot + 1)) {
@@ -152,9 +150,8 @@ static const tyn_param *find_param(const char *name, const tyn_pass_desc **pass,
         }
     }
     list_names(list, sizeof list, *pass);
-    tyn_log_print(log, TYN_LOG_ERROR, "setting '%s': pass '%s' has no such parameter; it has: %s",
-                  name, pass_name, *list ? list : "none");
-    return NULL;
+    return TYN_FAULT(log, NULL, "setting '%s': pass '%s' has no such parameter; it has: %s", name,
+                     pass_name, *list ? list : "none");
 }
 
 tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char *value,
@@ -169,9 +166,8 @@ tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char
     if (param && !parse_value(param, value, &number)) {
         char range[512];
         describe_range(range, sizeof range, param);
-        tyn_log_print(log, TYN_LOG_ERROR, "setting '%s' is '%s'; it must be %s", name, value,
-                      range);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "setting '%s' is '%s'; it must be %s", name, value,
+                         range);
     }
     return param ? put(settings, pass, param, number) : TYN_ERR_PARAMS;
 }
@@ -259,9 +255,8 @@ tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, cons
         }
         return result;
     }
-    tyn_log_print(log, TYN_LOG_ERROR, "quality '%s' is not known; it is draft, normal or high",
-                  preset);
-    return TYN_ERR_PARAMS;
+    return TYN_FAULT(log, TYN_ERR_PARAMS, "quality '%s' is not known; it is draft, normal or high",
+                     preset);
 }
 
 tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, const tyn_log *log,
@@ -270,8 +265,8 @@ tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, cons
     const char *preset = tyn_quality_name(quality);
     tyn_result result = tyn_settings_create(out);
     if (result == TYN_OK && !preset) {
-        tyn_log_print(log, TYN_LOG_ERROR, "quality is %d; it is one of tyn_quality", (int)quality);
-        result = TYN_ERR_PARAMS;
+        result =
+            TYN_FAULT(log, TYN_ERR_PARAMS, "quality is %d; it is one of tyn_quality", (int)quality);
     }
     if (result == TYN_OK) {
         result = tyn_settings_quality(*out, preset, log);

@@ -41,9 +41,8 @@ tyn_result tyn_phase_check(const tyn_phase phase[3], const char *of, const tyn_l
         tyn_phase_get(phase, p, values);
         for (int c = 0; c < 3; c++) {
             if (!(values[c] >= p->lo && values[c] <= p->hi)) {
-                tyn_log_print(log, TYN_LOG_ERROR, "%s.%s[%d] = %g: must be %s", of, p->name, c,
-                              values[c], p->right);
-                return TYN_ERR_PARAMS;
+                return TYN_FAULT(log, TYN_ERR_PARAMS, "%s.%s[%d] = %g: must be %s", of, p->name, c,
+                                 values[c], p->right);
             }
         }
     }
@@ -219,18 +218,16 @@ static tyn_result check_table(const tyn_phase_table *table, uint32_t index, cons
 {
     for (uint32_t k = 0; k < TYN_PHASE_NODES; k++) {
         if (!(table->values[k] >= 0 && table->values[k] <= 1e12f)) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "phase_tables[%u].values[%u] = %g: must be >= 0 and finite", index, k,
-                          table->values[k]);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS,
+                             "phase_tables[%u].values[%u] = %g: must be >= 0 and finite", index, k,
+                             table->values[k]);
         }
     }
     const double integral = tyn_phase_table_integral(table);
     if (!(fabs(integral - 1) < 1e-4)) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "phase_tables[%u]: its integral over the sphere is %.6g: must be 1", index,
-                      integral);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "phase_tables[%u]: its integral over the sphere is %.6g: must be 1", index,
+                         integral);
     }
     return TYN_OK;
 }
@@ -249,10 +246,9 @@ tyn_result tyn_phase_check_tables(const tyn_scene *scene, const tyn_log *log)
         const tyn_phase *r = p->table ? &right[p->table - 1] : p;
         if (!(p->g == r->g && p->delta == r->delta && p->forward == r->forward &&
               p->backward == r->backward && p->key == r->key)) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "media[%u].phase[%u]: not what tyn_scene_add_phase makes of table %u",
-                          i / 3, i % 3, p->table);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS,
+                             "media[%u].phase[%u]: not what tyn_scene_add_phase makes of table %u",
+                             i / 3, i % 3, p->table);
         }
     }
     return TYN_OK;

@@ -234,8 +234,7 @@ tyn_result tyn_scene_add_phase(tyn_scene *scene, const tyn_phase_form *form, con
     if (index == scene->num_phase_tables) {
         tyn_phase_table *grown = realloc(scene->phase_tables, (index + 1) * sizeof *grown);
         if (!grown) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its table", of);
-            return TYN_ERR_MEMORY;
+            return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for its table", of);
         }
         grown[index] = table;
         scene->phase_tables = grown;

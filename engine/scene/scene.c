@@ -163,15 +163,13 @@ tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *overr
     for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         const float *v = checks[i].value;
         if (!all_in(v, checks[i].lo, checks[i].hi)) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s = %g, %g, %g: must be %s", checks[i].name, v[0],
-                          v[1], v[2], checks[i].right);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS, "%s = %g, %g, %g: must be %s", checks[i].name,
+                             v[0], v[1], v[2], checks[i].right);
         }
     }
     if (!isfinite(o->density_scale)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "density scale = %g: must be finite and > 0",
-                      o->density_scale);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS, "density scale = %g: must be finite and > 0",
+                         o->density_scale);
     }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         tyn_medium *medium = &scene->media[i];

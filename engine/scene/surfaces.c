@@ -183,8 +183,7 @@ static tyn_result check_nodes(const tyn_surfaces *s, const tyn_log *log)
     uint8_t *depth = calloc((size_t)s->num_nodes + 1, 1);
     tyn_result r = TYN_OK;
     if (!depth) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no memory to check %u nodes", s->num_nodes);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "no memory to check %u nodes", s->num_nodes);
     }
     for (uint32_t i = 0; !r && i < s->num_nodes; i++) {
         const tyn_surface_node *n = &s->nodes[i];
@@ -204,12 +203,11 @@ static tyn_result check_nodes(const tyn_surfaces *s, const tyn_log *log)
             }
         }
         if (fault) {
-            tyn_log_print(log, TYN_LOG_ERROR,
+            r = TYN_FAULT(log, TYN_ERR_PARAMS,
                           "surfaces.nodes[%u] (first %u, count %u): %s (%u nodes, %u triangles, at "
                           "most %d levels)",
                           i, n->first, n->count, fault, s->num_nodes, s->num_triangles,
                           TYN_SURFACE_MAX_DEPTH);
-            r = TYN_ERR_PARAMS;
         }
     }
     free(depth);

@@ -182,9 +182,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_beam_params *p = params;
     if (p->num_suns < 1 || p->num_suns > TYN_BEAM_MAX_SUNS || p->extent[0] == 0) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR, "beam: %u suns planned, must be 1 to %d",
-                      p->num_suns, TYN_BEAM_MAX_SUNS);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS, "beam: %u suns planned, must be 1 to %d",
+                         p->num_suns, TYN_BEAM_MAX_SUNS);
     }
     tyn_extent extent = {p->extent[0], p->extent[1], p->extent[2]};
     tyn_build_buffer(b, BEAM_PORT_BEAMS, sizeof(p->beams));

@@ -35,18 +35,17 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_columns_params *p = params;
     const uint32_t *dims = p->dims;
     if (p->count < 1 || p->count > TYN_ORDINATES_MAX) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "columns: count is %u; must be 1 to %d ordinates", p->count,
-                      TYN_ORDINATES_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "columns: count is %u; must be 1 to %d ordinates", p->count,
+                         TYN_ORDINATES_MAX);
     }
     uint64_t words = (uint64_t)p->count * components(p) * ((dims[0] + 1) / 2) * dims[1] * dims[2];
     if (4 * words > max_bytes) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "columns: %u ordinates on a lattice of %u x %u x %u cells need %.0f MiB; at "
-                      "most 128 MiB: lower ordinates.count or lattice.cells",
-                      p->count, dims[0], dims[1], dims[2], (double)words * 4 / 0x1p20);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
+            "columns: %u ordinates on a lattice of %u x %u x %u cells need %.0f MiB; at "
+            "most 128 MiB: lower ordinates.count or lattice.cells",
+            p->count, dims[0], dims[1], dims[2], (double)words * 4 / 0x1p20);
     }
     uint32_t columns, nodes;
     grid_size(p, &columns, &nodes);

@@ -11,11 +11,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_extent color = tyn_build_extent(b, COMPOSITE_PORT_COLOR);
     const uint32_t times = p->joint ? 2 : 1;
     if (times * radiance.x != color.x || times * radiance.y != color.y) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "composite: the host's colour image is %ux%u, the view %ux%u: make it %u "
-                      "times the view",
-                      color.x, color.y, radiance.x, radiance.y, times);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "composite: the host's colour image is %ux%u, the view %ux%u: make it %u "
+                         "times the view",
+                         color.x, color.y, radiance.x, radiance.y, times);
     }
     if (p->half_color) {
         tyn_build_format(b, COMPOSITE_PORT_COLOR, VK_FORMAT_R16G16B16A16_SFLOAT);

@@ -72,27 +72,24 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_extent texels = {dims.x, dims.y, dims.z * channels};
     tyn_extent cells = tyn_build_extent(b, LATTICE_PORT_CELLS);
     if (cells.x != texels.x || cells.y != texels.y || cells.z != texels.z) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice': 'cells' has %u x %u x %u texels; its own shape has "
-                      "%u x %u x %u",
-                      cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'lattice': 'cells' has %u x %u x %u texels; its own shape has "
+                         "%u x %u x %u",
+                         cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
     }
     const uint32_t *repeat = p->shape.repeat;
     if ((repeat[0] && repeat[1] && repeat[2]) ||
         tyn_lattice_fit(p->shape.extent, repeat, p->shape.cells) != p->shape.cells) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice': sides that repeat must be whole numbers of cells, one "
-                      "side must not repeat, and there may be %d cells",
-                      TYN_LATTICE_MAX_ALL);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'lattice': sides that repeat must be whole numbers of cells, one "
+                         "side must not repeat, and there may be %d cells",
+                         TYN_LATTICE_MAX_ALL);
     }
     const bool walls = tyn_build_has(b, LATTICE_PORT_WALL_LINKS);
     if (walls != tyn_build_has(b, LATTICE_PORT_WALL_CELLS)) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice': 'wall_links' and 'wall_cells' must be connected both or "
-                      "neither");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'lattice': 'wall_links' and 'wall_cells' must be connected both or "
+                         "neither");
     }
     const uint64_t scalar = sizeof(float) * channels, n = num_cells(dims);
     const uint64_t elements = num_elements(dims, walls);

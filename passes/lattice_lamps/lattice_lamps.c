@@ -15,10 +15,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
     uint32_t groups = num_groups(p);
     if (groups < 1 || groups > LATTICE_LAMPS_MAX_GROUPS || p->num_fine > p->num_lamps) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice_lamps': %u groups of lights; must be 1 to %d", groups,
-                      LATTICE_LAMPS_MAX_GROUPS);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'lattice_lamps': %u groups of lights; must be 1 to %d", groups,
+                         LATTICE_LAMPS_MAX_GROUPS);
     }
     uint32_t layers = dims.z * p->shape.channels;
     tyn_build_image(b, LATTICE_LAMPS_PORT_SOURCE, (tyn_extent){dims.x, dims.y, layers}, 1);

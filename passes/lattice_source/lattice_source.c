@@ -9,10 +9,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_lattice_source_params *p = params;
     tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
     if (p->num_suns < 1 || p->num_suns > TYN_LATTICE_MAX_SUNS) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice_source': num_suns is %u; must be 1 to %d", p->num_suns,
-                      TYN_LATTICE_MAX_SUNS);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'lattice_source': num_suns is %u; must be 1 to %d", p->num_suns,
+                         TYN_LATTICE_MAX_SUNS);
     }
     tyn_build_image(b, LATTICE_SOURCE_PORT_SOURCE,
                     (tyn_extent){dims.x, dims.y, dims.z * p->shape.channels}, 1);

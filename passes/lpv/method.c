@@ -51,10 +51,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return tyn_graph_status(g);
     }
     if (job->scene->num_shapes == 0) {
-        tyn_log_print(
-            job->log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            job->log, TYN_ERR_PARAMS,
             "the scene has no medium: 'lpv' has nothing to probe or to balance; 'path' can");
-        return TYN_ERR_PARAMS;
     }
     tyn_add_medium(g, job, &s);
     add_lights(g, job, &s);

@@ -19,10 +19,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
     for (int i = 0; i < 3; i++) {
         if (p->size[i] == 0 || p->bricks[i] != (p->size[i] + TYN_BRICK - 1) / TYN_BRICK) {
-            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                          "medium: %u bricks of %d for %u voxels along axis %d", p->bricks[i],
-                          TYN_BRICK, p->size[i], i);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                             "medium: %u bricks of %d for %u voxels along axis %d", p->bricks[i],
+                             TYN_BRICK, p->size[i], i);
         }
     }
     if (p->mode == TYN_MEDIUM_COEFFICIENTS) {

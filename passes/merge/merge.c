@@ -13,16 +13,14 @@ static tyn_result declare(tyn_builder *b, const void *params)
     for (size_t i = 0; i < sizeof with; i++) {
         const uint8_t port = with[i];
         if (tyn_build_has(b, port) != ordinates) {
-            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                          "merge: '%s' and '%s' must be connected both or neither",
-                          ports[MERGE_PORT_ORDINATES].name, ports[port].name);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                             "merge: '%s' and '%s' must be connected both or neither",
+                             ports[MERGE_PORT_ORDINATES].name, ports[port].name);
         }
     }
     bool radials = tyn_build_has(b, MERGE_PORT_RADIALS);
     if ((ordinates || radials) && !tyn_build_has(b, MERGE_PORT_LUT_BLOCK)) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR, "merge: 'lut_block' must be connected");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS, "merge: 'lut_block' must be connected");
     }
     if (p->channels == 1) {
         tyn_build_format(b, MERGE_PORT_INSCATTER, VK_FORMAT_R32_SFLOAT);

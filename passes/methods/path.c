@@ -3,6 +3,7 @@
 #include <tyndall/extend/method.h>
 #include <tyndall/extend/path_scene.h>
 #include "shaders/path/path_args.h"
+#include "base/fault.h"
 #include "passes/methods/view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -190,10 +191,7 @@ static tyn_result check_fluxes(const tyn_job *job)
     } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
         wrong = "the medium repeats along all axes: no light enters it";
     }
-    if (wrong) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "output 'fluxes': %s", wrong);
-    }
-    return wrong ? TYN_ERR_UNSUPPORTED : TYN_OK;
+    return wrong ? TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED, "output 'fluxes': %s", wrong) : TYN_OK;
 }
 
 static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
@@ -225,20 +223,18 @@ static tyn_result check_repeat(const tyn_job *job)
 {
     const struct medium_block *m = &job->frame->medium;
     if (tyn_is_periodic(job->frame) && tyn_is_sheared(job->frame)) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "shape 0 repeats and is sheared; the axes of a periodic box must be at "
-                      "right angles");
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
+                         "shape 0 repeats and is sheared; the axes of a periodic box must be at "
+                         "right angles");
     }
     float lo[3], hi[3];
     tyn_surfaces_box(job->frame, lo, hi);
     for (int a = 0; a < 3; a++) {
         if (m->repeat[a] && hi[a] - lo[a] > 1.0001f * m->extent[a]) {
-            tyn_log_print(job->log, TYN_LOG_ERROR,
-                          "surfaces reach over %g m along the medium's axis %d, on which it "
-                          "repeats every %g m; they repeat with it and must fit into one period",
-                          (double)(hi[a] - lo[a]), a, (double)m->extent[a]);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                             "surfaces reach over %g m along the medium's axis %d, on which it "
+                             "repeats every %g m; they repeat with it and must fit into one period",
+                             (double)(hi[a] - lo[a]), a, (double)m->extent[a]);
         }
     }
     return TYN_OK;
@@ -260,9 +256,10 @@ static void add_distances(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
 static void add_depth(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
 {
     if (tyn_is_periodic(job->frame)) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "the layer 'depth' does not know periodic media (\"repeat\"); leave it out");
-        tyn_graph_refuse(g, TYN_ERR_PARAMS);
+        tyn_graph_refuse(
+            g,
+            TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                      "the layer 'depth' does not know periodic media (\"repeat\"); leave it out"));
         return;
     }
     tyn_job depth = *job;
@@ -281,10 +278,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH |
                                 TYN_OUTPUT_FLUXES | TYN_GUIDE_OUTPUTS;
     tyn_sources s = {0};
-    tyn_result result = check_repeat(job);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(check_repeat(job));
     if (tyn_job_hooks_read(job)) {
         tyn_job_warn(job, "what stands between march and composite is left out: 'path' does not "
                           "march");

@@ -8,6 +8,7 @@
 // and raymarch. A node that a scene does not need is not declared.
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
+#include "base/fault.h"
 #include "passes/methods/view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -80,15 +81,13 @@ static tyn_result check_repeat(const tyn_job *job)
                   "short for \"lattice.cells\"";
     }
     if (problem) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "shape 0 %s ('pop')", problem);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS, "shape 0 %s ('pop')", problem);
     }
     if (tyn_surfaces_emit(&job->scene->surfaces)) {
-        tyn_log_print(
-            job->log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            job->log, TYN_ERR_PARAMS,
             "surfaces that emit cannot light periodic media (\"repeat\") with this method; "
             "'path' can");
-        return TYN_ERR_PARAMS;
     }
     if (fit_a_period(job->frame)) {
         tyn_job_warn(job, "surfaces do not repeat with the medium: there is one copy of them, and "
@@ -147,20 +146,16 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_sources s = {0};
     tyn_field field = {0};
     tyn_view_inputs view = {.sources = &s, .field = &field};
-    tyn_result result = check_repeat(job);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(check_repeat(job));
     warn_of_mixtures(job);
     if (frame->empty && !(job->outputs & field_outputs)) {
         add_surfaces_alone(g, job, &s, &view);
         return tyn_graph_status(g);
     }
     if (job->scene->num_shapes == 0) {
-        tyn_log_print(
-            job->log, TYN_LOG_ERROR,
+        return TYN_FAULT(
+            job->log, TYN_ERR_PARAMS,
             "the scene has no medium: 'pop' has nothing to probe or to balance; 'path' can");
-        return TYN_ERR_PARAMS;
     }
     tyn_add_medium(g, job, &s);
     add_lights(g, job, &s);

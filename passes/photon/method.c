@@ -92,21 +92,20 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
                           tyn_is_lit(frame->environment.sky) ||
                           frame->lights.num_suns > tyn_num_beams(&frame->lights);
     if (job->outputs & TYN_OUTPUT_PROBE && job->view->scattered_only && straight) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "'photon' keeps light of the sky and of surfaces that has not scattered with "
-                      "all other (and "
-                      "that of suns and lamps with photon_trace.first=cache): probes cannot leave "
-                      "it out; 'pop' and 'path' can");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            job->log, TYN_ERR_PARAMS,
+            "'photon' keeps light of the sky and of surfaces that has not scattered with "
+            "all other (and "
+            "that of suns and lamps with photon_trace.first=cache): probes cannot leave "
+            "it out; 'pop' and 'path' can");
     }
     if (job->outputs & TYN_OUTPUT_LIGHT && !job->light->unscattered && straight) {
         tyn_job_warn(job, "the light field holds light that has not scattered, too ('photon')");
     }
     warn_of_light(job);
     if (job->scene->num_shapes == 0 && job->outputs & field_outputs) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "the scene has no medium: 'photon' has nothing to probe; 'path' can");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                         "the scene has no medium: 'photon' has nothing to probe; 'path' can");
     }
     tyn_sources marched = {0}; // with the light that is not in the cells
     if (!frame->empty || job->outputs & field_outputs) {

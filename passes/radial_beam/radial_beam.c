@@ -104,10 +104,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     uint32_t lights = p->num_lamps + p->max_vpls;
     if (lights == 0 || p->num_lamps > TYN_RADIAL_LAMPS_MAX || p->num_fine > p->num_lamps ||
         p->max_vpls > TYN_RADIAL_VPLS_MAX || p->finest < 1) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "radial_beam: %u lamps and %u VPLs planned, must be 1 to %d and 0 to %d",
-                      p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "radial_beam: %u lamps and %u VPLs planned, must be 1 to %d and 0 to %d",
+                         p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
     }
     struct radial_beam_args args = layout(p);
     tyn_extent extent = {args.size[0], args.size[1], args.size[2]};

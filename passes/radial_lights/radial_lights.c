@@ -7,10 +7,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_radial_lights_params *p = params;
     const uint32_t lights = p->num_lamps + p->max_vpls;
     if (lights == 0 || p->num_lamps > TYN_RADIAL_LAMPS_MAX || p->max_vpls > TYN_RADIAL_VPLS_MAX) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "radial_lights: %u lamps and %u VPLs, must be 1 to %d and 0 to %d",
-                      p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "radial_lights: %u lamps and %u VPLs, must be 1 to %d and 0 to %d",
+                         p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
     }
     tyn_build_buffer(b, RADIAL_LIGHTS_PORT_RADIALS,
                      offsetof(struct radial_block, list) + lights * sizeof(struct radial_grid));

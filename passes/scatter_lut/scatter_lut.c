@@ -138,10 +138,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     for (uint32_t i = 0; i < p->num_suns; i++) {
         if (i >= TYN_LUT_MAX_SUNS || !(p->mean_cosine[i] > 0 && p->mean_cosine[i] <= 1)) {
-            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                          "scatter_lut: %u suns, at most %d with mean cosines in (0, 1]",
-                          p->num_suns, TYN_LUT_MAX_SUNS);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                             "scatter_lut: %u suns, at most %d with mean cosines in (0, 1]",
+                             p->num_suns, TYN_LUT_MAX_SUNS);
         }
     }
     struct lut_block block;

@@ -30,9 +30,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
         return tyn_graph_status(g);
     }
     if (job->scene->num_shapes == 0) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "the scene has no medium: 'shdom' has nothing to probe; 'path' can");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                         "the scene has no medium: 'shdom' has nothing to probe; 'path' can");
     }
     tyn_add_medium(g, job, &s);
     tyn_add_sky(g, job, 0, false, &s);

@@ -55,10 +55,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_sky_shadows_params *p = params;
     const uint32_t maps = num_maps(p), side = across(p), texels = (uint32_t)p->texels;
     if (p->count < 1 || p->count > TYN_ORDINATES_MAX) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "sky_shadows: count is %u; must be 1 to %d directions", p->count,
-                      TYN_ORDINATES_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "sky_shadows: count is %u; must be 1 to %d directions", p->count,
+                         TYN_ORDINATES_MAX);
     }
     tyn_build_image(b, SKY_SHADOWS_PORT_SKY_ATLAS,
                     (tyn_extent){side * texels, (maps + side - 1) / side * texels, 1}, 1);

@@ -10,14 +10,12 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_wall_light_params *p = params;
     const bool sky = tyn_build_has(b, WALL_LIGHT_PORT_SKY_SEEN);
     if (p->num_suns == 0 && !sky && !tyn_build_has(b, WALL_LIGHT_PORT_RADIALS)) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'wall_light': no suns, no 'sky_seen', no 'radials': nothing shines");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'wall_light': no suns, no 'sky_seen', no 'radials': nothing shines");
     }
     if (p->num_suns > 0 && sky) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'wall_light': suns and 'sky_seen': it takes one of them");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'wall_light': suns and 'sky_seen': it takes one of them");
     }
     const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
     tyn_build_buffer(b, WALL_LIGHT_PORT_WALL_LIGHT, 12 * cells);

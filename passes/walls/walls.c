@@ -12,10 +12,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     uint32_t triangles =
         tyn_build_extent(b, WALLS_PORT_TRIANGLES).x / (uint32_t)sizeof(struct surface_triangle);
     if (triangles > TYN_WALLS_MAX_TRIANGLES) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'walls': %u triangles; at most %d can be told apart", triangles,
-                      TYN_WALLS_MAX_TRIANGLES);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "pass 'walls': %u triangles; at most %d can be told apart", triangles,
+                         TYN_WALLS_MAX_TRIANGLES);
     }
     tyn_build_buffer(b, WALLS_PORT_WALL_LINKS, 4 * n);
     tyn_build_buffer(b, WALLS_PORT_WALL_CELLS, sizeof(struct wall_cell) * n);

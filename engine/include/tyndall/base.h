@@ -88,6 +88,8 @@ typedef struct tyn_log {
 
 TYN_API void tyn_log_print(const tyn_log *log, tyn_log_level level, const char *format, ...)
     TYN_PRINTF(3, 4);
+// The value `result`, and why in the log: return TYN_FAULT(log, TYN_ERR_PARAMS, "'%s' is not there", name);
+#define TYN_FAULT(log, result, ...) (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), result)
 
 #ifdef __cplusplus
 }

@@ -6,9 +6,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_median_cut_params *p = params;
     if (p->map && !tyn_build_has(b, MEDIAN_CUT_PORT_SUMS)) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "median_cut: 'sums' must be connected where there is a map");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "median_cut: 'sums' must be connected where there is a map");
     }
     tyn_build_buffer(b, MEDIAN_CUT_PORT_CONSTELLATION, sizeof(struct constellation_block));
     return TYN_OK;

@@ -17,10 +17,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_extent texels = {dims.x, dims.y, dims.z * channels};
     const tyn_extent cells = tyn_build_extent(b, LPV_PORT_CELLS);
     if (cells.x != texels.x || cells.y != texels.y || cells.z != texels.z) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lpv': 'cells' has %u x %u x %u texels; its own shape has %u x %u x %u",
-                      cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
+            "pass 'lpv': 'cells' has %u x %u x %u texels; its own shape has %u x %u x %u", cells.x,
+            cells.y, cells.z, texels.x, texels.y, texels.z);
     }
     const uint64_t n = (uint64_t)texels.x * texels.y * texels.z;
     const uint32_t shells = p->extinction == LPV_EXTINCTION_PAPER ? 1 : LPV_SHELLS;

@@ -85,11 +85,10 @@ bool tyn_job_refuse_repeat(const tyn_job *job)
     for (uint32_t i = 0; i < job->scene->num_shapes; i++) {
         const bool *repeat = job->scene->shapes[i].repeat;
         if (repeat[0] || repeat[1] || repeat[2]) {
-            tyn_log_print(job->log, TYN_LOG_ERROR,
-                          "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
-                          "'path' can",
-                          i, job->method->name);
-            return false;
+            return TYN_FAULT(job->log, false,
+                             "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
+                             "'path' can",
+                             i, job->method->name);
         }
     }
     return true;

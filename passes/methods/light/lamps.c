@@ -42,10 +42,10 @@ void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s)
         return;
     }
     if (tyn_is_periodic(frame)) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "point and spot lights cannot light periodic media (\"repeat\") with this "
-                      "method; 'path' can");
-        tyn_graph_refuse(g, TYN_ERR_PARAMS);
+        tyn_graph_refuse(
+            g, TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                         "point and spot lights cannot light periodic media (\"repeat\") with this "
+                         "method; 'path' can"));
         return;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {[RADIAL_BEAM_PORT_VPLS] = vpls};

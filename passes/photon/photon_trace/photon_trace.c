@@ -69,18 +69,18 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_photon_trace_params *p = params;
     if (p->batch == 0 || count_dispatches(p) > TYN_PHOTON_DISPATCHES) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'photon_trace': %d generations of %d photons in batches of %u are more "
-                      "than %d dispatches",
-                      (int)p->generations, (int)p->photons, p->batch, TYN_PHOTON_DISPATCHES);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
+            "pass 'photon_trace': %d generations of %d photons in batches of %u are more "
+            "than %d dispatches",
+            (int)p->generations, (int)p->photons, p->batch, TYN_PHOTON_DISPATCHES);
     }
     if (tyn_photon_most_lobes(p) < (uint32_t)p->lobes) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'photon_trace': %d generations of %u cells are more than %d MiB; fewer "
-                      "of \"photon_trace.cells\" or \"photon_trace.generations\" fit",
-                      (int)p->generations, (unsigned)count_cells(p), PHOTON_MOST_BYTES >> 20);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
+            "pass 'photon_trace': %d generations of %u cells are more than %d MiB; fewer "
+            "of \"photon_trace.cells\" or \"photon_trace.generations\" fit",
+            (int)p->generations, (unsigned)count_cells(p), PHOTON_MOST_BYTES >> 20);
     }
     tyn_build_buffer(b, PHOTON_TRACE_PORT_PLAN, sizeof(struct photon_trace_plan));
     tyn_build_buffer(b, PHOTON_TRACE_PORT_GROUPS, 12 * TYN_PHOTON_DISPATCHES);

@@ -84,10 +84,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_propagate_radial_params *p = data;
     if (num_grids(p) == 0 || p->num_lamps > TYN_RADIAL_LAMPS_MAX ||
         p->max_vpls > TYN_RADIAL_VPLS_MAX) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "propagate_radial: %u lamps and %u VPLs, must be 1 to %d and 0 to %d",
-                      p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "propagate_radial: %u lamps and %u VPLs, must be 1 to %d and 0 to %d",
+                         p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
     }
     uint32_t side = side_of(p), tile = side + 2, tiles = tiles_of(p);
     uint32_t stacks = num_grids(p) * p->channels;

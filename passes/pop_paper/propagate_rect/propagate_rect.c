@@ -123,10 +123,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
     if (p->num_ordinates == 0 || p->num_ordinates > TYN_ORDINATES_MAX) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "propagate_rect: %u ordinates, must be 1 to %d", p->num_ordinates,
-                      TYN_ORDINATES_MAX);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "propagate_rect: %u ordinates, must be 1 to %d", p->num_ordinates,
+                         TYN_ORDINATES_MAX);
     }
     uint32_t cells = (uint32_t)p->cells, tiles = tiles_of(p),
              stacks = p->num_ordinates * p->channels;

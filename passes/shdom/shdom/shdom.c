@@ -81,20 +81,19 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent texels = {dims.x, dims.y, dims.z * p->shape.channels};
     const tyn_extent cells = tyn_build_extent(b, PORT(CELLS));
     if (cells.x != texels.x || cells.y != texels.y || cells.z != texels.z) {
-        tyn_log_print(
-            tyn_build_log(b), TYN_LOG_ERROR,
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
             "pass 'shdom': 'cells' has %u x %u x %u texels; its own shape has %u x %u x %u",
             cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
-        return TYN_ERR_PARAMS;
     }
     const uint64_t n = (uint64_t)dims.x * dims.y * dims.z;
     const uint32_t bands = (uint32_t)p->bands, coefficients = whole_groups(bands * bands);
     if (4 * n * coefficients > max_bytes) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "shdom: %u bands on %u x %u x %u cells need %.0f MiB for a channel; at most "
-                      "128 MiB: lower shdom.bands or shdom.cells",
-                      bands, dims.x, dims.y, dims.z, 4.0 * (double)n * coefficients / 0x1p20);
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(
+            tyn_build_log(b), TYN_ERR_PARAMS,
+            "shdom: %u bands on %u x %u x %u cells need %.0f MiB for a channel; at most "
+            "128 MiB: lower shdom.bands or shdom.cells",
+            bands, dims.x, dims.y, dims.z, 4.0 * (double)n * coefficients / 0x1p20);
     }
     const uint32_t ordinates = num_ordinates(p);
     const uint32_t batch = batch_size(n, ordinates > p->count ? ordinates : p->count);

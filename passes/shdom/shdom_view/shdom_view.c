@@ -17,10 +17,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent dims = dims_of(tyn_build_extent(b, PORT(CELLS)), p->channels);
     if (tyn_build_has(b, PORT(ORDINATES)) != tyn_build_has(b, PORT(COLUMNS)) ||
         (p->channels == 3 && !(tyn_build_has(b, PORT(SENT_1)) && tyn_build_has(b, PORT(SENT_2))))) {
-        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "shdom_view: 'ordinates' and 'columns' must be connected both or neither, "
-                      "and 'sent_1' and 'sent_2' where there are three channels");
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
+                         "shdom_view: 'ordinates' and 'columns' must be connected both or neither, "
+                         "and 'sent_1' and 'sent_2' where there are three channels");
     }
     tyn_build_image(b, PORT(INSCATTER), (tyn_extent){dims.x + 2, dims.y + 2, dims.z + 2}, 1);
     tyn_build_image(b, PORT(TOWARDS), dims, 1);
