@@ -16,6 +16,7 @@
 #define PNANOVDB_BUF_BOUNDS_CHECK
 #include <nanovdb/PNanoVDB.h>
 #include "base/bytes.h"
+#include "base/fault.h"
 #include "base/half.h"
 #include "io/volume.h"
 
@@ -26,9 +27,6 @@ typedef struct input {
     const char *file;
     const tyn_log *log;
 } input;
-
-#define LOG(in, ...) tyn_log_print((in)->log, TYN_LOG_ERROR, __VA_ARGS__)
-#define FAULT(in, ...) (LOG(in, __VA_ARGS__), TYN_ERR_PARAMS)
 
 // ---- the table of contents ------------------------------------------------------------------
 
@@ -59,20 +57,19 @@ static bool known(const uint8_t *magic, uint64_t version)
 static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, const input *in)
 {
     if (size < HEADER_BYTES || memcmp(p, "NanoVDB", 7) != 0) {
-        LOG(in, "%s: not a NanoVDB file (%s): must start with \"NanoVDB\"", in->file,
-            p == in->begin ? "wrong magic number" : "damaged behind a segment");
-        return 0;
+        return TYN_FAULT(in->log, 0, "%s: not a NanoVDB file (%s): must start with \"NanoVDB\"",
+                         in->file,
+                         p == in->begin ? "wrong magic number" : "damaged behind a segment");
     }
     if (!known(p, tyn_load(p + 8, 4))) {
-        LOG(in, "%s: NanoVDB version %llu: only version %d can be read", in->file,
-            (unsigned long long)(tyn_load(p + 8, 4) >> 21), PNANOVDB_MAJOR_VERSION_NUMBER);
-        return 0;
+        return TYN_FAULT(in->log, 0, "%s: NanoVDB version %llu: only version %d can be read",
+                         in->file, (unsigned long long)(tyn_load(p + 8, 4) >> 21),
+                         PNANOVDB_MAJOR_VERSION_NUMBER);
     }
     uint32_t count = (uint32_t)tyn_load(p + 12, 2);
     entry *grown = realloc(list->grids, (list->count + count + 1) * sizeof *grown);
     if (!grown) {
-        LOG(in, "%s: no memory to read it", in->file);
-        return 0;
+        return TYN_FAULT(in->log, 0, "%s: no memory to read it", in->file);
     }
     list->grids = grown;
     uint64_t at = HEADER_BYTES;
@@ -81,8 +78,8 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
         uint64_t name_size = size - at < META_BYTES ? 0 : tyn_load(meta + 136, 4);
         if (size - at < META_BYTES || name_size < 1 || name_size > size - at - META_BYTES ||
             meta[META_BYTES + name_size - 1] != 0) {
-            LOG(in, "%s: cut short or damaged in the metadata of its grids", in->file);
-            return 0;
+            return TYN_FAULT(in->log, 0, "%s: cut short or damaged in the metadata of its grids",
+                             in->file);
         }
         grown[list->count + i] = (entry){
             .name = (const char *)meta + META_BYTES,
@@ -98,9 +95,9 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
     for (uint32_t i = 0; i < count; i++) {
         entry *e = &grown[list->count + i];
         if (e->file_size > size - at) {
-            LOG(in, "%s: grid \"%.100s\" is cut short: has %llu of %llu bytes", in->file, e->name,
-                (unsigned long long)(size - at), (unsigned long long)e->file_size);
-            return 0;
+            return TYN_FAULT(in->log, 0, "%s: grid \"%.100s\" is cut short: has %llu of %llu bytes",
+                             in->file, e->name, (unsigned long long)(size - at),
+                             (unsigned long long)e->file_size);
         }
         e->data = p + at;
         at += e->file_size;
@@ -183,29 +180,29 @@ static tyn_result unpack(const entry *e, const input *in, uint8_t **out)
     if (e->grid_size < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE ||
         e->grid_size / 1100 > e->file_size || e->grid_size > TYN_MAX_FILE_BYTES ||
         (e->codec == CODEC_NONE && e->grid_size != e->file_size)) {
-        return FAULT(in, "%s: grid \"%.100s\" of %llu bytes stored in %llu cannot be", in->file,
-                     e->name, (unsigned long long)e->grid_size, (unsigned long long)e->file_size);
+        return TYN_FAULT(
+            in->log, TYN_ERR_PARAMS, "%s: grid \"%.100s\" of %llu bytes stored in %llu cannot be",
+            in->file, e->name, (unsigned long long)e->grid_size, (unsigned long long)e->file_size);
     }
     if (e->codec > CODEC_BLOSC) {
-        return FAULT(in,
-                     "%s: grid \"%.100s\" is packed by the unknown codec %u: must be none, ZIP "
-                     "or BLOSC",
-                     in->file, e->name, e->codec);
+        return TYN_FAULT(in->log, TYN_ERR_PARAMS,
+                         "%s: grid \"%.100s\" is packed by the unknown codec %u: must be none, ZIP "
+                         "or BLOSC",
+                         in->file, e->name, e->codec);
     }
 #ifndef TYN_HAVE_BLOSC
     if (e->codec == CODEC_BLOSC) {
-        tyn_log_print(in->log, TYN_LOG_ERROR,
-                      "%s: grid \"%.100s\" is packed by BLOSC: build with -Dblosc=enabled (needs "
-                      "c-blosc), or save the file with ZIP",
-                      in->file, e->name);
-        return TYN_ERR_UNSUPPORTED;
+        return TYN_FAULT(
+            in->log, TYN_ERR_UNSUPPORTED,
+            "%s: grid \"%.100s\" is packed by BLOSC: build with -Dblosc=enabled (needs "
+            "c-blosc), or save the file with ZIP",
+            in->file, e->name);
     }
 #endif
     uint8_t *memory = calloc(1, (size_t)e->grid_size + 64);
     if (!memory) {
-        tyn_log_print(in->log, TYN_LOG_ERROR, "%s: no memory for a grid of %llu bytes", in->file,
-                      (unsigned long long)e->grid_size);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(in->log, TYN_ERR_MEMORY, "%s: no memory for a grid of %llu bytes",
+                         in->file, (unsigned long long)e->grid_size);
     }
     bool ok = true;
     if (e->codec == CODEC_NONE) {
@@ -219,8 +216,9 @@ static tyn_result unpack(const entry *e, const input *in, uint8_t **out)
     }
     if (!ok) {
         free(memory);
-        return FAULT(in, "%s: grid \"%.100s\" cannot be unpacked: its data are damaged", in->file,
-                     e->name);
+        return TYN_FAULT(in->log, TYN_ERR_PARAMS,
+                         "%s: grid \"%.100s\" cannot be unpacked: its data are damaged", in->file,
+                         e->name);
     }
     *out = memory;
     return TYN_OK;
@@ -494,7 +492,8 @@ static tyn_result look_at(extraction *x, pnanovdb_root_handle_t *root, uint8_t *
         pnanovdb_grid_get_grid_type(x->buf, grid) != e->type || at % 8 != 0 ||
         at < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE || at > x->size ||
         x->size - at < x->layout->root_size) {
-        return FAULT(in, "%s: grid \"%.100s\" is damaged in its header", in->file, e->name);
+        return TYN_FAULT(in->log, TYN_ERR_PARAMS, "%s: grid \"%.100s\" is damaged in its header",
+                         in->file, e->name);
     }
     return TYN_OK;
 }
@@ -504,29 +503,25 @@ static tyn_result extract(tyn_grid_job *job, uint8_t *memory, const entry *e, co
     const pnanovdb_grid_handle_t grid = {{0}};
     extraction x;
     pnanovdb_root_handle_t root;
-    tyn_result r = look_at(&x, &root, memory, e, in);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(look_at(&x, &root, memory, e, in));
     x.volume = &job->volume;
     pnanovdb_coord_t lo = pnanovdb_root_get_bbox_min(x.buf, root);
     pnanovdb_coord_t hi = pnanovdb_root_get_bbox_max(x.buf, root);
     if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) {
-        return FAULT(in, "%s: grid \"%.100s\" has no active voxels", in->file, e->name);
+        return TYN_FAULT(in->log, TYN_ERR_PARAMS, "%s: grid \"%.100s\" has no active voxels",
+                         in->file, e->name);
     }
     const int64_t size[3] = {(int64_t)hi.x - lo.x + 1, (int64_t)hi.y - lo.y + 1,
                              (int64_t)hi.z - lo.z + 1};
     job->channels = x.channels;
-    r = tyn_volume_alloc(&job->volume, size, x.channels, in->file, in->log);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(tyn_volume_alloc(&job->volume, size, x.channels, in->file, in->log));
     x.voxels_left = (uint64_t)(size[0] * size[1] * size[2]);
     x.lo[0] = lo.x, x.lo[1] = lo.y, x.lo[2] = lo.z;
     if (!copy_root(&x, root)) {
         tyn_volume_finish(&job->volume);
-        return FAULT(
-            in, "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it or overlap",
+        return TYN_FAULT(
+            in->log, TYN_ERR_PARAMS,
+            "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it or overlap",
             in->file, e->name);
     }
     copy_map(&x, grid);
@@ -619,21 +614,13 @@ static tyn_result tell(tyn_volume_grid *g, const entry *e, const input *in, doub
 
 static tyn_result tell_all(tyn_grid_job *job, const contents *list, const input *in)
 {
-    tyn_result r = TYN_OK;
     double left = (double)TYN_MAX_VOXELS;
-    job->list = calloc(list->count + 1, sizeof *job->list);
-    job->num_list = list->count;
-    if (!job->list) {
-        LOG(in, "%s: no memory to list its grids", in->file);
-        return TYN_ERR_MEMORY;
-    }
+    tyn_result r = tyn_grid_begin_list(job, list->count, in->file);
     for (uint32_t i = 0; !r && i < list->count; i++) {
         r = tell(&job->list[i], &list->grids[i], in, &left);
     }
     if (r) {
-        free(job->list);
-        job->list = NULL;
-        job->num_list = 0;
+        tyn_grid_drop(job);
     }
     return r;
 }

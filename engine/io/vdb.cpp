@@ -12,6 +12,7 @@
 #include <vector>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
+#include "base/fault.h"
 #include "io/vdb_check.h"
 extern "C" {
 #include "io/file.h"
@@ -70,23 +71,18 @@ tyn_result copy_grid(tyn_grid_job *job, const grid_type &grid, const char *path)
     const openvdb::math::Transform &transform = grid.transform();
     openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (box.empty()) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has no active voxels", path,
-                      grid.getName().c_str());
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS, "%s: grid \"%.100s\" has no active voxels", path,
+                         grid.getName().c_str());
     }
     if (!transform.isLinear()) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: grid \"%.100s\" has a %s: must be affine", path,
-                      grid.getName().c_str(), transform.mapType().c_str());
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(job->log, TYN_ERR_PARAMS, "%s: grid \"%.100s\" has a %s: must be affine",
+                         path, grid.getName().c_str(), transform.mapType().c_str());
     }
     const int64_t size[3] = {int64_t(box.max().x()) - box.min().x() + 1,
                              int64_t(box.max().y()) - box.min().y() + 1,
                              int64_t(box.max().z()) - box.min().z() + 1};
     job->channels = sizeof(value) / sizeof(float);
-    tyn_result r = tyn_volume_alloc(&job->volume, size, job->channels, path, job->log);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(tyn_volume_alloc(&job->volume, size, job->channels, path, job->log));
     // LayoutXYZ: x runs fastest. Copies inactive values as well.
     openvdb::tools::Dense<value, openvdb::tools::LayoutXYZ> dense(
         box, reinterpret_cast<value *>(job->volume.data));
@@ -169,13 +165,9 @@ tyn_result tell_all(tyn_grid_job *job, openvdb::io::File &file, const char *path
     for (openvdb::io::File::NameIterator name = file.beginName(); name != file.endName(); ++name) {
         names.push_back(name.gridName());
     }
-    job->list = static_cast<tyn_volume_grid *>(std::calloc(names.size() + 1, sizeof *job->list));
-    if (!job->list) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no memory to list its grids", path);
-        return TYN_ERR_MEMORY;
-    }
-    for (const std::string &name : names) {
-        tell(&job->list[job->num_list++], file, name);
+    TYN_TRY(tyn_grid_begin_list(job, uint32_t(names.size()), path));
+    for (size_t i = 0; i < names.size(); i++) {
+        tell(&job->list[i], file, names[i]);
     }
     return TYN_OK;
 }
@@ -185,10 +177,7 @@ tyn_result check(const char *path, const tyn_log *log)
 {
     const void *bytes;
     size_t size;
-    tyn_result r = tyn_file_map(path, TYN_MAX_FILE_BYTES, &bytes, &size, log);
-    if (r) {
-        return r;
-    }
+    TYN_TRY(tyn_file_map(path, TYN_MAX_FILE_BYTES, &bytes, &size, log));
     bool whole = tyn_vdb_check(bytes, size, openvdb::OPENVDB_FILE_VERSION, path, log);
     tyn_file_unmap(bytes, size);
     return whole ? TYN_OK : TYN_ERR_PARAMS;
@@ -230,15 +219,11 @@ tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
 {
     tyn_result r = TYN_ERR_PARAMS;
     std::memset(&job->volume, 0, sizeof job->volume);
-    tyn_result checked = check(path, job->log);
-    if (checked) {
-        return checked;
-    }
+    TYN_TRY(check(path, job->log));
     try {
         return load(job, path);
     } catch (const std::bad_alloc &) {
-        tyn_log_print(job->log, TYN_LOG_ERROR, "%s: no memory to read it", path);
-        r = TYN_ERR_MEMORY;
+        r = TYN_FAULT(job->log, TYN_ERR_MEMORY, "%s: no memory to read it", path);
     } catch (const std::exception &e) {
         std::string what = e.what();
         for (char &c : what) {
@@ -247,9 +232,6 @@ tyn_result tyn_vdb_read_file(tyn_grid_job *job, const char *path)
         tyn_log_print(job->log, TYN_LOG_ERROR, "%s: not a .vdb file that can be read: %.300s", path,
                       what.c_str());
     }
-    tyn_volume_finish(&job->volume);
-    std::free(job->list);
-    job->list = nullptr;
-    job->num_list = 0;
+    tyn_grid_drop(job);
     return r;
 }

@@ -23,30 +23,43 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t 
     memset(volume, 0, sizeof *volume);
     for (int a = 0; a < 3; a++) {
         if (size[a] < 1 || size[a] > 65536) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "%s: grid of %lld x %lld x %lld voxels: each size must be 1 to 65536",
-                          file, (long long)size[0], (long long)size[1], (long long)size[2]);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(log, TYN_ERR_PARAMS,
+                             "%s: grid of %lld x %lld x %lld voxels: each size must be 1 to 65536",
+                             file, (long long)size[0], (long long)size[1], (long long)size[2]);
         }
         voxels *= (uint64_t)size[a];
         volume->size[a] = (uint32_t)size[a];
     }
     if (voxels > TYN_MAX_VOXELS / channels) {
-        tyn_log_print(log, TYN_LOG_ERROR,
-                      "%s: grid of %lld x %lld x %lld voxels: at most %llu in all (it is stored "
-                      "dense); resample it coarser",
-                      file, (long long)size[0], (long long)size[1], (long long)size[2],
-                      (unsigned long long)(TYN_MAX_VOXELS / channels));
-        return TYN_ERR_PARAMS;
+        return TYN_FAULT(log, TYN_ERR_PARAMS,
+                         "%s: grid of %lld x %lld x %lld voxels: at most %llu in all (it is stored "
+                         "dense); resample it coarser",
+                         file, (long long)size[0], (long long)size[1], (long long)size[2],
+                         (unsigned long long)(TYN_MAX_VOXELS / channels));
     }
     volume->data = calloc((size_t)voxels * channels, sizeof *volume->data);
     if (!volume->data) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for %llu voxels", file,
-                      (unsigned long long)voxels);
-        return TYN_ERR_MEMORY;
+        return TYN_FAULT(log, TYN_ERR_MEMORY, "%s: no memory for %llu voxels", file,
+                         (unsigned long long)voxels);
     }
     mat_identity(volume->index_to_world);
     return TYN_OK;
+}
+
+tyn_result tyn_grid_begin_list(tyn_grid_job *job, uint32_t count, const char *file)
+{
+    job->list = calloc(count + 1, sizeof *job->list);
+    job->num_list = job->list ? count : 0;
+    return job->list ? TYN_OK
+                     : TYN_FAULT(job->log, TYN_ERR_MEMORY, "%s: no memory to list its grids", file);
+}
+
+void tyn_grid_drop(tyn_grid_job *job)
+{
+    tyn_volume_finish(&job->volume);
+    free(job->list);
+    job->list = NULL;
+    job->num_list = 0;
 }
 
 uint64_t tyn_grid_hash(const uint32_t size[3], uint32_t channels, const float *data)
@@ -73,12 +86,11 @@ tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid)
             const uint64_t v = i / job->channels, x = v % volume->size[0];
             const uint64_t y = v / volume->size[0] % volume->size[1];
             const uint64_t z = v / volume->size[0] / volume->size[1];
-            tyn_log_print(job->log, TYN_LOG_ERROR,
-                          "%s: %s %g at voxel %llu, %llu, %llu: must be finite", file,
-                          use_name(job->use), value, (unsigned long long)x, (unsigned long long)y,
-                          (unsigned long long)z);
             tyn_volume_finish(volume);
-            return TYN_ERR_PARAMS;
+            return TYN_FAULT(job->log, TYN_ERR_PARAMS,
+                             "%s: %s %g at voxel %llu, %llu, %llu: must be finite", file,
+                             use_name(job->use), value, (unsigned long long)x,
+                             (unsigned long long)y, (unsigned long long)z);
         }
         if (value < 0.0f && job->use != TYN_GRID_VALUE) {
             job->clamped++;

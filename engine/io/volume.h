@@ -44,6 +44,12 @@ tyn_result tyn_grid_read(tyn_grid_job *job, const char *path);
 tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], uint32_t channels,
                             const char *file, const tyn_log *log);
 
+// Room for what TYN_GRID_LIST tells, zeroed.
+tyn_result tyn_grid_begin_list(tyn_grid_job *job, uint32_t count, const char *file);
+
+// After a fault: nothing is left in `job`.
+void tyn_grid_drop(tyn_grid_job *job);
+
 // After data is filled: refuses non-finite values, clamps and counts negative ones, finds the
 // maximum, hashes, names the volume. Uses other than DENSITY: as tyn_grid_use says.
 tyn_result tyn_grid_seal(tyn_grid_job *job, const char *file, const char *grid);
