@@ -5,6 +5,8 @@
 #include "gpu/device.h"
 #include <stdio.h>
 
+#define NEEDS(usage) VK_IMAGE_USAGE_##usage##_BIT, "VK_IMAGE_USAGE_" #usage "_BIT"
+
 // An image that the host lends: `what` it is, and what it must be able to do.
 static tyn_result check_image(const tyn_device *dev, const tyn_image *image, const char *what,
                               VkImageUsageFlags usage, const char *usage_name)
@@ -47,8 +49,7 @@ static tyn_result check_color(const tyn_device *dev, const tyn_image *color, con
               "view",
               color->extent.width, color->extent.height, view->width, view->height);
     }
-    return check_image(dev, color, "color", VK_IMAGE_USAGE_STORAGE_BIT,
-                       "VK_IMAGE_USAGE_STORAGE_BIT");
+    return check_image(dev, color, "color", NEEDS(STORAGE));
 }
 
 static tyn_result check_depth(const tyn_device *dev, const tyn_frame *frame)
@@ -63,8 +64,7 @@ static tyn_result check_depth(const tyn_device *dev, const tyn_frame *frame)
         FAULT("depth is %u x %u, color is %u x %u; make them equal", depth->extent.width,
               depth->extent.height, size.width, size.height);
     }
-    return check_image(dev, depth, "depth", VK_IMAGE_USAGE_SAMPLED_BIT,
-                       "VK_IMAGE_USAGE_SAMPLED_BIT");
+    return check_image(dev, depth, "depth", NEEDS(SAMPLED));
 }
 
 // Images that take results.
@@ -91,8 +91,7 @@ static tyn_result check_results(const tyn_device *dev, const tyn_frame *frame, u
                   image->extent.width, image->extent.height, frame->view->width,
                   frame->view->height);
         }
-        TYN_TRY(check_image(dev, image, lent->what, VK_IMAGE_USAGE_STORAGE_BIT,
-                            "VK_IMAGE_USAGE_STORAGE_BIT"));
+        TYN_TRY(check_image(dev, image, lent->what, NEEDS(STORAGE)));
     }
     return TYN_OK;
 }
@@ -128,8 +127,7 @@ static tyn_result check_light(const tyn_device *dev, const tyn_frame_lights *lig
             FAULT("%s is %u x %u x %u; it must have 1 to 1048576 texels", names[i], e.width,
                   e.height, e.depth);
         }
-        TYN_TRY(check_image(dev, image, names[i], VK_IMAGE_USAGE_STORAGE_BIT,
-                            "VK_IMAGE_USAGE_STORAGE_BIT"));
+        TYN_TRY(check_image(dev, image, names[i], NEEDS(STORAGE)));
     }
     return TYN_OK;
 }
@@ -185,10 +183,18 @@ static tyn_result check_densities(const tyn_device *dev, const tyn_frame *frame)
                   "SFLOAT or UFLOAT",
                   n - 1, (int)image->format);
         }
-        TYN_TRY(check_image(dev, image, "densities", VK_IMAGE_USAGE_SAMPLED_BIT,
-                            "VK_IMAGE_USAGE_SAMPLED_BIT"));
+        TYN_TRY(check_image(dev, image, "densities", NEEDS(SAMPLED)));
     }
     return TYN_OK;
+}
+
+static uint32_t count_densities(const tyn_scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->num_volumes; i++) {
+        count += !scene->volumes[i].data;
+    }
+    return count;
 }
 
 // Each is brought from its own `before` to its own `after`, so none may be lent twice.
@@ -209,10 +215,7 @@ static tyn_result check_distinct(const tyn_frame *frame, uint32_t outputs, const
         {frame->light.blue, "light.blue"},
     };
     enum { FIXED = sizeof fixed / sizeof *fixed };
-    uint32_t num_densities = 0;
-    for (uint32_t i = 0; i < frame->scene->num_volumes; i++) {
-        num_densities += !frame->scene->volumes[i].data;
-    }
+    const uint32_t num_densities = count_densities(frame->scene);
     char first[32], second[32];
     for (uint32_t i = 0; i < FIXED + num_densities; i++) {
         const tyn_image *a = i < FIXED ? fixed[i].image : &frame->densities[i - FIXED];
@@ -247,10 +250,7 @@ tyn_result tyn_frame_check_images(const tyn_context *ctx, const tyn_frame *frame
 tyn_result tyn_frame_check_content(const tyn_context *ctx, const tyn_frame *frame)
 {
     const tyn_log *log = &ctx->dev->log;
-    uint32_t num_densities = 0;
-    for (uint32_t i = 0; i < frame->scene->num_volumes; i++) {
-        num_densities += !frame->scene->volumes[i].data;
-    }
+    const uint32_t num_densities = count_densities(frame->scene);
     const bool composite = ctx->outputs & TYN_OUTPUT_COMPOSITE;
     const tyn_image *laid_over[] = {composite ? frame->color : NULL,
                                     composite ? frame->depth : NULL};
