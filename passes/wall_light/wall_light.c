@@ -23,7 +23,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
                      sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
     tyn_build_buffer(b, WALL_LIGHT_PORT_ARRIVED, 12 * (listed ? cells : 1));
-    tyn_build_buffer(b, WALL_LIGHT_PORT_POWER, sizeof(struct wall_light_power));
     tyn_build_buffer(b, WALL_LIGHT_PORT_FIRST, 4 * (listed ? 1 + cells : 1));
     tyn_build_buffer(b, WALL_LIGHT_PORT_PARTS,
                      12 * (listed ? WALL_LIGHT_VPLS * WALL_LIGHT_PARTS : 1));
@@ -50,7 +49,6 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
     const tyn_extent vpls = {WALL_LIGHT_VPLS * WALL_LIGHT_GROUP, 1, 1};
     tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
     tyn_rec_fill(r, WALL_LIGHT_PORT_FIRST, WALL_LIGHT_DARK);
-    tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_EXPECTED, .cells = vpls, .args = args, .spec = of_vpls);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = all, .args = args, .spec = of_cells);
     tyn_rec_dispatch_indirect(r,
@@ -87,26 +85,11 @@ static void record(tyn_recorder *r, const void *params)
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);
-    } else {
-        tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
     }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }
 
 #define COUNTS(field) offsetof(struct wall_light_power, field)
-static const tyn_counter counters[] = {
-    {"rooms", COUNTS(rooms)},
-    {"least", COUNTS(least), true},
-    {"most", COUNTS(most), true},
-    {.name = "astray",
-     .offset = COUNTS(astray),
-     .real = true,
-     .unit = "of what virtual lights send to walls",
-     .limit = 0.05,
-     .warning = "accuracy: of the light that virtual lights send to surfaces about %g %% goes to "
-                "rooms of too few cells to have lattice walls that it meets (-D lattice.cells)"},
-    {NULL},
-};
 
 const tyn_pass_desc tyn_pass_wall_light = {
     .name = "wall_light",
@@ -117,6 +100,15 @@ const tyn_pass_desc tyn_pass_wall_light = {
     TYN_PASS_TABLES(tyn_wall_light_params),
     .debug_port = WALL_LIGHT_PORT_WALL_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
-    .counters = counters,
-    .counter_port = WALL_LIGHT_PORT_POWER,
+    TYN_COUNTS(
+        WALL_LIGHT_PORT_POWER, struct wall_light_power, {"rooms", COUNTS(rooms)},
+        {"least", COUNTS(least), true}, {"most", COUNTS(most), true},
+        {.name = "astray",
+         .offset = COUNTS(astray),
+         .real = true,
+         .unit = "of what virtual lights send to walls",
+         .limit = 0.05,
+         .warning =
+             "accuracy: of the light that virtual lights send to surfaces about %g %% goes to "
+             "rooms of too few cells to have lattice walls that it meets (-D lattice.cells)"}),
 };
