@@ -218,12 +218,8 @@ static void local_from_m(const tyn_shape *shape, const rigid *m, tyn_vec4 rows[3
             in_m[i][a] = vec_dot(m->axes[a], c[i]);
         }
     }
-    double bc[3], ca[3], ab[3];
-    vec_cross(bc, in_m[1], in_m[2]);
-    vec_cross(ca, in_m[2], in_m[0]);
-    vec_cross(ab, in_m[0], in_m[1]);
-    double det = vec_dot(in_m[0], bc);
-    const double *inverse[3] = {bc, ca, ab};
+    double inverse[3][3]; // times the determinant
+    const double det = mat_cofactors(inverse, in_m[0], in_m[1], in_m[2]);
     for (int r = 0; r < 3; r++) {
         for (int a = 0; a < 3; a++) {
             rows[r][a] = (float)(inverse[r][a] / det);

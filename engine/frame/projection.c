@@ -21,13 +21,11 @@ static bool finite_floats(const float *m, int count)
 // Where a . p = -a[3] for each of three rows; false: nowhere or not in one point.
 static bool meet(const double a[4], const double b[4], const double c[4], double p[3])
 {
-    double bc[3], ca[3], ab[3];
-    vec_cross(bc, b, c);
-    vec_cross(ca, c, a);
-    vec_cross(ab, a, b);
-    const double det = vec_dot(a, bc), size = vec_length(a) * vec_length(b) * vec_length(c);
+    double across[3][3];
+    const double det = mat_cofactors(across, a, b, c);
+    const double size = vec_length(a) * vec_length(b) * vec_length(c);
     for (int i = 0; i < 3; i++) {
-        p[i] = -(a[3] * bc[i] + b[3] * ca[i] + c[3] * ab[i]) / det;
+        p[i] = -(a[3] * across[0][i] + b[3] * across[1][i] + c[3] * across[2][i]) / det;
     }
     return fabs(det) > TINY * size;
 }

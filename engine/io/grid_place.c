@@ -16,14 +16,13 @@ static bool invert(double out[16], const double m[16])
     if (!(fabs(det) > 0) || !isfinite(det)) {
         return false;
     }
+    double rows[3][3];
+    mat_cofactors(rows, m, m + 4, m + 8);
     mat_identity(out);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) {
-            const int a = (c + 1) % 3, b = (c + 2) % 3, d = (r + 1) % 3, e = (r + 2) % 3;
-            out[4 * c + r] = (m[4 * d + a] * m[4 * e + b] - m[4 * e + a] * m[4 * d + b]) / det;
+            out[4 * c + r] = rows[r][c] / det;
         }
-    }
-    for (int r = 0; r < 3; r++) {
         out[12 + r] = -(out[r] * m[12] + out[4 + r] * m[13] + out[8 + r] * m[14]);
     }
     return true;

@@ -1,7 +1,9 @@
 // primaries.c -- colours of a file's primaries as linear Rec. 709.
 #include "io/primaries.h"
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
+#include "scene/matrix.h"
 
 static const double rec709[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
 
@@ -28,15 +30,10 @@ static void apply(const double m[9], const double v[3], double out[3])
 
 static bool invert(const double m[9], double out[9])
 {
-    double cofactor[9];
+    double columns[3][3]; // of the inverse, times the determinant
+    const double det = mat_cofactors(columns, m, m + 3, m + 6);
     for (int i = 0; i < 9; i++) {
-        const int r = i / 3, c = i % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3,
-                  c2 = (c + 2) % 3;
-        cofactor[i] = m[3 * r1 + c1] * m[3 * r2 + c2] - m[3 * r1 + c2] * m[3 * r2 + c1];
-    }
-    const double det = m[0] * cofactor[0] + m[1] * cofactor[1] + m[2] * cofactor[2];
-    for (int i = 0; i < 9; i++) {
-        out[i] = cofactor[i % 3 * 3 + i / 3] / det;
+        out[i] = columns[i % 3][i / 3] / det;
     }
     return isfinite(det) && fabs(det) > 1e-9;
 }
@@ -69,15 +66,13 @@ static bool to_xyz(const double c[8], double out[9])
     return true;
 }
 
-bool tyn_primaries_to_rec709(const double c[8], float m[9])
+// Row by row. False where nothing is to be done.
+static bool to_rec709(const double c[8], float m[9])
 {
     double from[9], to[9], back[9], adapt[9], cones_back[9], whites[2][3], cones[2][3], all[9];
     double apart = 0;
     for (int i = 0; i < 8; i++) {
         apart = fmax(apart, fabs(c[i] - rec709[i]));
-    }
-    for (int i = 0; i < 9; i++) {
-        m[i] = i % 4 == 0;
     }
     if (!(apart > 1e-3) || !to_xyz(c, from) || !to_xyz(rec709, to) || !invert(to, back) ||
         !invert(bradford, cones_back) || !white_of(c + 6, whites[0]) ||
@@ -107,7 +102,7 @@ bool tyn_primaries_to_rec709(const double c[8], float m[9])
 void tyn_pixels_to_rec709(float *pixels, size_t count, const double c[8])
 {
     float m[9];
-    if (!tyn_primaries_to_rec709(c, m)) {
+    if (!to_rec709(c, m)) {
         return;
     }
     for (size_t i = 0; i < count; i++) {

@@ -62,6 +62,16 @@ static inline void vec_cross(double out[3], const double a[3], const double b[3]
     memcpy(out, r, sizeof r);
 }
 
+// Rows of the inverse of the matrix with columns a, b and c, times its determinant, which is returned.
+static inline double mat_cofactors(double rows[3][3], const double a[3], const double b[3],
+                                   const double c[3])
+{
+    vec_cross(rows[0], b, c);
+    vec_cross(rows[1], c, a);
+    vec_cross(rows[2], a, b);
+    return vec_dot(a, rows[0]);
+}
+
 static inline bool vec_normalize(double v[3]) // false where there is no direction
 {
     double scale = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
