@@ -339,8 +339,6 @@ tyn_result graph_keep_places(tyn_graph *g, heritage *old);
 tyn_result graph_draft_shared(tyn_graph *g, bool anew);
 tyn_result graph_bind_shared(tyn_graph *g);
 bool graph_block_used(const tyn_graph *g, const shared_block *block);
-// How much of what a resource takes lies where others that needed nodes make lie, too.
-VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index);
 // Of what a node makes and works in: in all, and how much of it lies where what other nodes make or work in does.
 void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint64_t *shared);
 void graph_retire_blocks(tyn_graph *g, bool all); // those in which nothing lies, or all

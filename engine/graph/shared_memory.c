@@ -114,7 +114,8 @@ static bool is_needed(const tyn_graph *g, uint32_t index)
     return false;
 }
 
-VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index)
+// How much of what a resource takes lies where others that needed nodes make lie, too.
+static VkDeviceSize shared_bytes(const tyn_graph *g, uint32_t index)
 {
     const phys *p = &g->phys[index];
     const VkDeviceSize end = p->offset + p->size;
@@ -148,7 +149,7 @@ void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint6
         const uint32_t id = graph_port(n, p, DIR_MADE);
         if (id) {
             *bytes += g->phys[id - 1].bytes;
-            *shared += graph_shared_bytes(g, id - 1);
+            *shared += shared_bytes(g, id - 1);
         }
     }
 }
