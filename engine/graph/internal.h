@@ -10,7 +10,7 @@
 #include "gpu/memory.h"
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
-enum { NUM_TEXEL_FORMATS = 4 };
+enum { NUM_TEXEL_FORMATS = 4, NUM_DESCRIPTORS = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER + 1 };
 // The first resources of every declaration, by tyn_dim: histories that nobody writes, bound where an optional input is
 // absent. ZERO_WORDS has two words a texel, for what is stored packed.
 enum { ZERO_BYTES = 256, ZERO_WORDS = TYN_IMAGE_3D + 1, NUM_ZEROS };
@@ -143,7 +143,7 @@ typedef struct pipeline_list {
 // What a dry run of the recorder learns.
 typedef struct survey {
     uint64_t hash; // of all kernels, bindings and specialisations: the structure of the dispatches
-    uint32_t sets, uniform_buffers, storage_buffers, texel_buffers, storage_images, sampled_images;
+    uint32_t sets, descriptors[NUM_DESCRIPTORS]; // by VkDescriptorType
 } survey;
 
 // Resources of the last compilation that this one does not use.

@@ -426,13 +426,8 @@ static void survey_launch(tyn_recorder *r, const launch *l)
     s->sets++;
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         tyn_use use = k->bindings[i].use;
-        bool buffer = n->pass->ports[ports[i]].dim == TYN_BUFFER;
-        s->uniform_buffers += use == TYN_USE_UNIFORM;
-        s->sampled_images += use == TYN_USE_SAMPLED;
         const int texels = graph_texel_index(use);
-        s->texel_buffers += texels >= 0;
-        s->storage_buffers += buffer && use != TYN_USE_UNIFORM && texels < 0;
-        s->storage_images += !buffer && use != TYN_USE_SAMPLED;
+        s->descriptors[tyn_descriptor_type(n->pass, &k->bindings[i])]++;
         if (r->usage) {
             phys *p = &r->usage[bound(r, ports[i])];
             p->image_usage |=

@@ -13,13 +13,10 @@ void graph_destroy_slot(tyn_graph *g, frame_slot *slot)
 static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
 {
     const survey *room = &g->room;
-    const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, room->uniform_buffers},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, room->storage_buffers},
-        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, room->texel_buffers},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, room->storage_images},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, room->sampled_images},
-    };
+    VkDescriptorPoolSize sizes[NUM_DESCRIPTORS];
+    for (uint32_t i = 0; i < NUM_DESCRIPTORS; i++) { // there is room for one of each at least
+        sizes[i] = (VkDescriptorPoolSize){(VkDescriptorType)i, room->descriptors[i]};
+    }
     tyn_device *dev = g->dev;
     slot->made = g->frame;
     tyn_result result = tyn_vk_check(
@@ -29,7 +26,7 @@ static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
                                      &(VkDescriptorPoolCreateInfo){
                                          .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                          .maxSets = room->sets,
-                                         .poolSizeCount = sizeof sizes / sizeof sizes[0],
+                                         .poolSizeCount = NUM_DESCRIPTORS,
                                          .pPoolSizes = sizes},
                                      NULL, &slot->pool)),
         "vkCreateDescriptorPool");
@@ -57,10 +54,11 @@ static bool have_room(const tyn_graph *g, const survey *s)
             return false;
         }
     }
-    return s->sets <= room->sets && s->uniform_buffers <= room->uniform_buffers &&
-           s->storage_buffers <= room->storage_buffers && s->texel_buffers <= room->texel_buffers &&
-           s->storage_images <= room->storage_images && s->sampled_images <= room->sampled_images &&
-           g->num_nodes <= g->num_timed;
+    bool room_for_all = s->sets <= room->sets && g->num_nodes <= g->num_timed;
+    for (uint32_t i = 0; i < NUM_DESCRIPTORS; i++) {
+        room_for_all = room_for_all && s->descriptors[i] <= room->descriptors[i];
+    }
+    return room_for_all;
 }
 
 // A fourth more than is wanted, so that a compilation that wants a little more finds it.
@@ -74,12 +72,10 @@ tyn_result graph_create_slots(tyn_graph *g, const survey *s)
 {
     const bool keep = have_room(g, s);
     if (!keep) {
-        g->room = (survey){.sets = roomy(s->sets),
-                           .uniform_buffers = roomy(s->uniform_buffers),
-                           .storage_buffers = roomy(s->storage_buffers),
-                           .texel_buffers = roomy(s->texel_buffers),
-                           .storage_images = roomy(s->storage_images),
-                           .sampled_images = roomy(s->sampled_images)};
+        g->room.sets = roomy(s->sets);
+        for (uint32_t i = 0; i < NUM_DESCRIPTORS; i++) {
+            g->room.descriptors[i] = roomy(s->descriptors[i]);
+        }
         g->num_timed = roomy(g->num_nodes);
     }
     tyn_result result = TYN_OK;
