@@ -1,5 +1,6 @@
 // memory.c -- see memory.h.
 #include "gpu/memory.h"
+#include "base/fault.h"
 #include <stdlib.h>
 
 static const VkDeviceSize MIN_BLOCK = 1u << 20, MAX_BLOCK = 256u << 20;
@@ -100,13 +101,12 @@ static tyn_result fill_block(tyn_device *dev, tyn_block *block)
 
 tyn_result tyn_heap_allocate(tyn_device *dev, tyn_heap *heap)
 {
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < heap->num_blocks; i++) {
+    for (uint32_t i = 0; i < heap->num_blocks; i++) {
         if (!heap->blocks[i].allocation.memory) {
-            result = fill_block(dev, &heap->blocks[i]);
+            TYN_TRY(fill_block(dev, &heap->blocks[i]));
         }
     }
-    return result;
+    return TYN_OK;
 }
 
 tyn_result tyn_heap_add(tyn_heap *heap, const tyn_block *block)

@@ -57,9 +57,8 @@ static tyn_result make_image(tyn_graph *g, const resource *r, phys *p)
 static tyn_result make_views(tyn_graph *g, const resource *r, phys *p)
 {
     tyn_device *dev = g->dev;
-    tyn_result result = TYN_OK;
     // View 0 sees all mips, the others one each.
-    for (uint32_t v = 0; result == TYN_OK && v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
+    for (uint32_t v = 0; v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
         VkImageSubresourceRange range = {graph_aspect(r->format), 0, r->mips, 0, 1};
         if (v) {
             range.baseMipLevel = v - 1;
@@ -77,9 +76,9 @@ static tyn_result make_views(tyn_graph *g, const resource *r, phys *p)
                                          .format = r->format,
                                          .subresourceRange = range},
                 NULL, view));
-        result = tyn_vk_check(dev, made, r->name);
+        TYN_TRY(tyn_vk_check(dev, made, r->name));
     }
-    return result;
+    return TYN_OK;
 }
 
 static tyn_result make_buffer(tyn_graph *g, VkDeviceSize size, VkBufferUsageFlags usage,
@@ -130,8 +129,7 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
 {
     const tyn_device *dev = g->dev;
     const uint32_t limit = dev->properties.limits.maxTexelBufferElements;
-    tyn_result result = TYN_OK;
-    for (int i = 0; result == TYN_OK && i < NUM_TEXEL_FORMATS; i++) {
+    for (int i = 0; i < NUM_TEXEL_FORMATS; i++) {
         if (!(p->texel_uses >> i & 1)) {
             continue;
         }
@@ -142,20 +140,18 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
                               "bytes from one",
                               name, (unsigned long long)p->bytes, limit, size);
         }
-        result = tyn_vk_check(
-            dev,
-            TYN_VK_MADE(&p->texels[i],
-                        dev->vk.CreateBufferView(
-                            dev->device,
-                            &(VkBufferViewCreateInfo){
-                                .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                .buffer = p->buffer,
-                                .format = graph_texel_formats[i],
-                                .range = p->bytes < size ? size : p->bytes / size * size},
-                            NULL, &p->texels[i])),
-            name);
+        const VkResult made = TYN_VK_MADE(
+            &p->texels[i],
+            dev->vk.CreateBufferView(
+                dev->device,
+                &(VkBufferViewCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                          .buffer = p->buffer,
+                                          .format = graph_texel_formats[i],
+                                          .range = p->bytes < size ? size : p->bytes / size * size},
+                NULL, &p->texels[i]));
+        TYN_TRY(tyn_vk_check(dev, made, name));
     }
-    return result;
+    return TYN_OK;
 }
 
 // What nodes make, unless it is too small to be worth the barriers. Tests that fill it with NaN want it apart.
@@ -183,9 +179,9 @@ static tyn_result draft_resource(tyn_graph *g, const resource *r, phys *p, VkDev
     p->made = g->frame;
     p->identity = graph_identity(g, r);
     p->age = r->kind == RESOURCE_HISTORY ? 0 : g->age;
-    const tyn_result result = make_object(g, r, p);
-    if (result != TYN_OK || p->shared) {
-        return result;
+    TYN_TRY(make_object(g, r, p));
+    if (p->shared) {
+        return TYN_OK;
     }
     const VkMemoryRequirements need = graph_requirements(g, p);
     const VkDeviceSize likely = r->kind == RESOURCE_HISTORY ? 0 : *expected;
@@ -195,15 +191,14 @@ static tyn_result draft_resource(tyn_graph *g, const resource *r, phys *p, VkDev
 
 tyn_result graph_draft_readbacks(tyn_graph *g)
 {
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
         phys *p = &g->phys[g->outputs[i].ref.resource - 1];
         if (g->outputs[i].readback && !p->readback.buffer) {
-            result = draft_host_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                       TYN_MEMORY_READBACK, "readback", &p->readback);
+            TYN_TRY(draft_host_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                      TYN_MEMORY_READBACK, "readback", &p->readback));
         }
     }
-    return result;
+    return TYN_OK;
 }
 
 // Which resources share memory; bytes that the others will ask for.
@@ -225,8 +220,7 @@ tyn_result graph_draft_resources(tyn_graph *g)
 {
     VkDeviceSize expected = expect_bytes(g);
     g->persistent_bytes = g->transient_bytes = 0;
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+    for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
         if (p->borrowed) {
@@ -238,34 +232,31 @@ tyn_result graph_draft_resources(tyn_graph *g)
         } else if (!p->shared) {
             g->transient_bytes += p->bytes;
         }
-        result = p->kept ? TYN_OK : draft_resource(g, r, p, &expected);
+        TYN_TRY(p->kept ? TYN_OK : draft_resource(g, r, p, &expected));
     }
-    return result;
+    return TYN_OK;
 }
 
 // Of an object without memory. Places that are shared have been bound.
 static tyn_result bind_object(tyn_graph *g, const tyn_heap *heap, const resource *r, phys *p)
 {
-    tyn_result result = TYN_OK;
-    if (p->image) {
-        result = p->shared ? result : tyn_heap_bind_image(g->dev, heap, p->image, p->place);
-        return result == TYN_OK ? make_views(g, r, p) : result;
+    if (!p->shared) {
+        TYN_TRY(p->image ? tyn_heap_bind_image(g->dev, heap, p->image, p->place)
+                         : tyn_heap_bind_buffer(g->dev, heap, p->buffer, p->place, NULL));
     }
-    result = p->shared ? result : tyn_heap_bind_buffer(g->dev, heap, p->buffer, p->place, NULL);
-    return result == TYN_OK ? create_texel_views(g, p, r->name) : result;
+    return p->image ? make_views(g, r, p) : create_texel_views(g, p, r->name);
 }
 
 tyn_result graph_bind_objects(tyn_graph *g)
 {
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+    for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
-        result = p->kept || p->borrowed ? TYN_OK : bind_object(g, heap_of(g, r, p), r, p);
-        result = result == TYN_OK ? bind_host_buffer(g, &g->heap, &p->readback) : result;
-        result = result == TYN_OK ? bind_host_buffer(g, &g->staging_heap, &p->staging) : result;
+        TYN_TRY(p->kept || p->borrowed ? TYN_OK : bind_object(g, heap_of(g, r, p), r, p));
+        TYN_TRY(bind_host_buffer(g, &g->heap, &p->readback));
+        TYN_TRY(bind_host_buffer(g, &g->staging_heap, &p->staging));
     }
-    return result;
+    return TYN_OK;
 }
 
 static bool wants_staging(const resource *r, const phys *p)
@@ -287,16 +278,15 @@ bool graph_uploads_staged(const tyn_graph *g)
 
 tyn_result graph_draft_staging(tyn_graph *g)
 {
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+    for (uint32_t i = 0; i < g->num_resources; i++) {
         phys *p = &g->phys[i];
         if (wants_staging(&g->resources[i], p)) {
-            result =
-                draft_host_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                  TYN_MEMORY_UPLOAD, "staging", &p->staging);
+            TYN_TRY(draft_host_buffer(g, &g->staging_heap, p->bytes,
+                                      VK_BUFFER_USAGE_TRANSFER_SRC_BIT, TYN_MEMORY_UPLOAD,
+                                      "staging", &p->staging));
         }
     }
-    return result;
+    return TYN_OK;
 }
 
 void graph_fill_staging(tyn_graph *g)

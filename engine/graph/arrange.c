@@ -1,5 +1,6 @@
 // arrange.c -- what a compilation will hold: drafted beside what is there and counted, then allocated, or undone.
 #include "graph/internal.h"
+#include "base/fault.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,15 +83,12 @@ static tyn_result draft_all(tyn_graph *g, draft *d)
 {
     const bool anew = d->how == ARRANGE_ANEW;
     mark_uses(g);
-    tyn_result result = graph_survey(g, &d->survey, g->phys);
-    if (result != TYN_OK) {
-        return result;
-    }
+    TYN_TRY(graph_survey(g, &d->survey, g->phys));
     graph_inherit(g, &d->old, anew);
-    result = graph_keep_places(g, &d->old);
-    result = result == TYN_OK ? graph_draft_resources(g) : result;
-    result = result == TYN_OK ? graph_draft_shared(g, anew) : result;
-    return result == TYN_OK ? graph_draft_readbacks(g) : result;
+    TYN_TRY(graph_keep_places(g, &d->old));
+    TYN_TRY(graph_draft_resources(g));
+    TYN_TRY(graph_draft_shared(g, anew));
+    return graph_draft_readbacks(g);
 }
 
 tyn_result graph_draft(tyn_graph *g, arrangement how, draft *d)
@@ -209,14 +207,14 @@ static void give_up(tyn_graph *g, draft *d)
 tyn_result graph_commit(tyn_graph *g, draft *d)
 {
     give_up(g, d);
-    tyn_result result = tyn_heap_allocate(g->dev, &g->heap);
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_phys; i++) {
-        result = tyn_heap_allocate(g->dev, &g->phys[i].heap);
+    TYN_TRY(tyn_heap_allocate(g->dev, &g->heap));
+    for (uint32_t i = 0; i < g->num_phys; i++) {
+        TYN_TRY(tyn_heap_allocate(g->dev, &g->phys[i].heap));
     }
-    for (uint32_t b = 0; result == TYN_OK && b < g->num_blocks; b++) {
-        result = tyn_heap_allocate(g->dev, &g->blocks[b].heap);
+    for (uint32_t b = 0; b < g->num_blocks; b++) {
+        TYN_TRY(tyn_heap_allocate(g->dev, &g->blocks[b].heap));
     }
-    result = result == TYN_OK ? tyn_heap_allocate(g->dev, &g->staging_heap) : result;
-    result = result == TYN_OK ? graph_bind_shared(g) : result;
-    return result == TYN_OK ? graph_bind_objects(g) : result;
+    TYN_TRY(tyn_heap_allocate(g->dev, &g->staging_heap));
+    TYN_TRY(graph_bind_shared(g));
+    return graph_bind_objects(g);
 }

@@ -1,5 +1,6 @@
 // shared_memory.c -- memory of what nodes make, some of it in the same place.
 #include "graph/internal.h"
+#include "base/fault.h"
 #include "graph/share.h"
 #include <stdlib.h>
 
@@ -86,18 +87,17 @@ static void settle(tyn_graph *g, uint32_t index, const tyn_share_item *item)
 
 tyn_result graph_bind_shared(tyn_graph *g)
 {
-    tyn_result result = TYN_OK;
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_phys; i++) {
+    for (uint32_t i = 0; i < g->num_phys; i++) {
         const phys *p = &g->phys[i];
         if (p->kept || !is_placed(p)) {
             continue;
         }
         const tyn_heap *heap = &find_block(g, p->block)->heap;
         const tyn_place place = {.offset = p->offset};
-        result = p->image ? tyn_heap_bind_image(g->dev, heap, p->image, place)
-                          : tyn_heap_bind_buffer(g->dev, heap, p->buffer, place, NULL);
+        TYN_TRY(p->image ? tyn_heap_bind_image(g->dev, heap, p->image, place)
+                         : tyn_heap_bind_buffer(g->dev, heap, p->buffer, place, NULL));
     }
-    return result;
+    return TYN_OK;
 }
 
 // Does a needed node make it?
@@ -256,12 +256,11 @@ static tyn_result place(tyn_graph *g, sharing *s, bool anew)
     }
     tyn_share_plan(&s->list, s->follows, g->num_nodes, MAX_BLOCK);
     g->reused = !anew && g->num_blocks > 0; // whoever used that memory last may be gone
-    tyn_result result = TYN_OK;
-    for (uint32_t b = g->num_blocks; result == TYN_OK && b < s->list.num_blocks; b++) {
-        result = add_block(g, s, b);
+    for (uint32_t b = g->num_blocks; b < s->list.num_blocks; b++) {
+        TYN_TRY(add_block(g, s, b));
     }
     VkDeviceSize kept = 0;
-    for (uint32_t i = 0; result == TYN_OK && i < s->list.count; i++) {
+    for (uint32_t i = 0; i < s->list.count; i++) {
         const tyn_share_item *item = &s->list.items[i];
         kept += item->kept && !item->unused ? item->size : 0;
         if (i >= s->list.placed) {
@@ -269,7 +268,7 @@ static tyn_result place(tyn_graph *g, sharing *s, bool anew)
         }
     }
     g->transient_bytes += bytes_anew(g, s) - kept;
-    return result;
+    return TYN_OK;
 }
 
 tyn_result graph_draft_shared(tyn_graph *g, bool anew)

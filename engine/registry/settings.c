@@ -1,5 +1,6 @@
 // settings.c -- values of pass parameters, by "pass.param".
 #include "registry/registry.h"
+#include "base/fault.h"
 #include "graph/graph.h"
 #include "base/given.h"
 #include <tyndall/extend/hash.h>
@@ -248,12 +249,11 @@ tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, cons
             continue;
         }
         forget_presets(settings);
-        tyn_result result = TYN_OK;
-        for (int s = 0; result == TYN_OK && presets[i].settings[s].setting; s++) {
-            result = tyn_settings_set(settings, presets[i].settings[s].setting,
-                                      presets[i].settings[s].value, log);
+        for (int s = 0; presets[i].settings[s].setting; s++) {
+            TYN_TRY(tyn_settings_set(settings, presets[i].settings[s].setting,
+                                     presets[i].settings[s].value, log));
         }
-        return result;
+        return TYN_OK;
     }
     return TYN_FAULT(log, TYN_ERR_PARAMS, "quality '%s' is not known; it is draft, normal or high",
                      preset);

@@ -276,10 +276,7 @@ static tyn_result check_arrays(const tyn_scene *scene, const tyn_log *log)
 
 tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
 {
-    tyn_result r = TYN_GIVEN(log, scene) ? check_arrays(scene, log) : TYN_ERR_PARAMS;
-    if (r) {
-        return r;
-    }
+    TYN_TRY(TYN_GIVEN(log, scene) ? check_arrays(scene, log) : TYN_ERR_PARAMS);
     if (scene->num_media > TYN_MAX_MEDIA || scene->num_shapes > TYN_MAX_SHAPES ||
         scene->num_lights > TYN_MAX_LIGHTS) {
         FAULT("scene: %u media, %u shapes, %u lights: at most %d, %d, %d", scene->num_media,
@@ -288,44 +285,43 @@ tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
     if (scene->num_phase_tables > TYN_MAX_PHASE_TABLES) {
         FAULT("num_phase_tables = %u: at most %d", scene->num_phase_tables, TYN_MAX_PHASE_TABLES);
     }
-    for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
-        r = check_volume(&scene->volumes[i], i, log);
+    for (uint32_t i = 0; i < scene->num_volumes; i++) {
+        TYN_TRY(check_volume(&scene->volumes[i], i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_color_grids; i++) {
-        r = check_color_grid(&scene->color_grids[i], i, log);
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        TYN_TRY(check_color_grid(&scene->color_grids[i], i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_media; i++) {
-        r = check_medium(scene, i, log);
-        r = r ? r : check_medium_grids(scene, i, log);
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        TYN_TRY(check_medium(scene, i, log));
+        TYN_TRY(check_medium_grids(scene, i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_shapes; i++) {
-        r = check_shape(scene, i, log);
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        TYN_TRY(check_shape(scene, i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_lights; i++) {
-        r = check_light(&scene->lights[i], i, log);
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        TYN_TRY(check_light(&scene->lights[i], i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_cameras; i++) {
-        r = tyn_camera_check(&scene->cameras[i], i, log);
+    for (uint32_t i = 0; i < scene->num_cameras; i++) {
+        TYN_TRY(tyn_camera_check(&scene->cameras[i], i, log));
     }
-    return r ? r : check_environment(&scene->environment, log);
+    return check_environment(&scene->environment, log);
 }
 
 tyn_result tyn_scene_check_data(const tyn_scene *scene, const tyn_log *log)
 {
-    tyn_result r = TYN_OK;
-    for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
-        r = check_densities(&scene->volumes[i], i, log);
+    for (uint32_t i = 0; i < scene->num_volumes; i++) {
+        TYN_TRY(check_densities(&scene->volumes[i], i, log));
     }
-    for (uint32_t i = 0; !r && i < scene->num_color_grids; i++) {
-        r = check_colors(&scene->color_grids[i], i, log);
+    for (uint32_t i = 0; i < scene->num_color_grids; i++) {
+        TYN_TRY(check_colors(&scene->color_grids[i], i, log));
     }
-    r = r ? r : tyn_phase_check_tables(scene, log);
-    return r ? r : check_texels(&scene->environment, log);
+    TYN_TRY(tyn_phase_check_tables(scene, log));
+    return check_texels(&scene->environment, log);
 }
 
 tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
 {
-    tyn_result r = tyn_scene_check_values(scene, log);
-    r = r ? r : tyn_scene_check_data(scene, log);
-    return r ? r : tyn_surfaces_check(&scene->surfaces, log);
+    TYN_TRY(tyn_scene_check_values(scene, log));
+    TYN_TRY(tyn_scene_check_data(scene, log));
+    return tyn_surfaces_check(&scene->surfaces, log);
 }

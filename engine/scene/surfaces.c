@@ -216,10 +216,10 @@ static tyn_result check_nodes(const tyn_surfaces *s, const tyn_log *log)
 
 tyn_result tyn_surfaces_check(const tyn_surfaces *s, const tyn_log *log)
 {
-    tyn_result r = tyn_surfaces_check_arrays(s, log);
-    r = r ? r : check_vertices(s, log);
-    r = r ? r : check_triangles(s, log);
-    r = r ? r : check_materials(s, log);
-    r = r ? r : check_textures(s, log);
-    return r ? r : check_nodes(s, log);
+    TYN_TRY(tyn_surfaces_check_arrays(s, log));
+    TYN_TRY(check_vertices(s, log));
+    TYN_TRY(check_triangles(s, log));
+    TYN_TRY(check_materials(s, log));
+    TYN_TRY(check_textures(s, log));
+    return check_nodes(s, log);
 }
