@@ -119,13 +119,16 @@ outcome propagate_run(gpu_test *t, const setup *s)
         refs[PORT(NODES)] = gpu_buffer(t, "nodes", &plate_leaf, sizeof plate_leaf);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs), TYN_OK);
-    static const int ports[] = {PORT(GRIDS), PORT(CELLS),  PORT(STATE), PORT(SUM),
-                                PORT(LIT),   PORT(FLIGHT), PORT(PLACES)};
+    static const int ports[] = {PORT(GRIDS), PORT(CELLS), PORT(STATE),
+                                PORT(SUM),   PORT(LIT),   PORT(PLACES)};
     for (size_t i = 0; i < sizeof ports / sizeof *ports; i++) {
         tyn_graph_output(t->graph, tyn_pass_propagate_rect.ports[ports[i]].name, refs[ports[i]],
                          true);
     }
     tyn_graph_output(t->graph, "seen", refs[PORT(SEEN)], true);
+    if (params.threshold > 0) { // else no light in flight is summed
+        tyn_graph_output(t->graph, "flight", refs[PORT(FLIGHT)], true);
+    }
     if (params.keep_light) {
         tyn_graph_output(t->graph, "light", refs[PORT(LIGHT)], true);
     }
