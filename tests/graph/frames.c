@@ -546,7 +546,8 @@ static void faults(void **state)
     assert_int_equal(frame(f), TYN_OK);
 }
 
-// What the first node of a pass counts is read back where that is asked for, by the pass's name; else it keeps no node alive.
+// A frame that asks for counters reads back the buffer of the first node of a pass, under the name of the pass. A frame that
+// does not keeps no node alive for them.
 static void counters(void **state)
 {
     fixture *f = *state;
