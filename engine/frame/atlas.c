@@ -3,6 +3,7 @@
 #include "frame/frame_scene.h"
 #include "base/half.h"
 #include <tyndall/extend/hash.h>
+#include <math.h>
 #include <string.h>
 
 // A grid in either texture.
@@ -101,21 +102,30 @@ static void put(const tyn_atlas *atlas, void *texels, size_t index, float value)
     }
 }
 
-// Colours are over the grid's largest, so that half floats hold them whatever their unit.
+// Densities of a row; or colours over the grid's largest, so that half floats hold them whatever their unit.
+static void fill_row(const tyn_atlas *atlas, const stacked *g, const float *value, void *texels,
+                     size_t at)
+{
+    const float scale = g->most > 0 ? g->most : INFINITY;
+    for (uint32_t x = 0; !atlas->colors && x < g->size[0]; x++) {
+        put(atlas, texels, at + x, value[x]);
+    }
+    for (uint32_t i = 0; atlas->colors && i < 3 * g->size[0]; i++) {
+        const uint32_t x = i / 3, c = i % 3;
+        const float v = value[g->channels == 3 ? i : x];
+        put(atlas, texels, at + 4 * (size_t)x + c, v / scale);
+    }
+}
+
 static void fill_grid(const tyn_atlas *atlas, const stacked *g, uint32_t z0, void *texels)
 {
     const tyn_extent e = atlas->extent;
-    const uint32_t width = atlas->colors ? 4 : 1, shown = atlas->colors ? 3 : 1;
+    const size_t width = atlas->colors ? 4 : 1;
     const float *value = g->data;
     for (uint32_t row = 0; row < g->size[1] * g->size[2]; row++) {
         const uint32_t y = row % g->size[1], z = z0 + row / g->size[1];
-        size_t at = ((size_t)z * e.y + y) * e.x * width;
-        for (uint32_t x = 0; x < g->size[0]; x++, at += width, value += g->channels) {
-            for (uint32_t c = 0; c < shown; c++) {
-                const float v = value[g->channels == 3 ? c : 0];
-                put(atlas, texels, at + c, !atlas->colors ? v : g->most > 0 ? v / g->most : 0);
-            }
-        }
+        fill_row(atlas, g, value, texels, ((size_t)z * e.y + y) * e.x * width);
+        value += (size_t)g->size[0] * g->channels;
     }
 }
 
