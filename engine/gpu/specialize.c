@@ -3,73 +3,12 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#define SPV_ENABLE_UTILITY_CODE
+#include <spirv/unified1/spirv.h>
+
+extern inline void SpvHasResultAndType(SpvOp op, bool *has_result, bool *has_type);
 
 enum { HEADER = 5, BOUND = 3 };
-
-enum {
-    OP_NOP = 0,
-    OP_NAME = 5,
-    OP_LINE = 8,
-    OP_ENTRY_POINT = 15,
-    OP_TYPE_BOOL = 20,
-    OP_TYPE_INT = 21,
-    OP_CONSTANT_TRUE = 41,
-    OP_CONSTANT_FALSE = 42,
-    OP_CONSTANT = 43,
-    OP_CONSTANT_COMPOSITE = 44,
-    OP_SPEC_CONSTANT_TRUE = 48,
-    OP_SPEC_CONSTANT_FALSE = 49,
-    OP_SPEC_CONSTANT = 50,
-    OP_SPEC_CONSTANT_COMPOSITE = 51,
-    OP_SPEC_CONSTANT_OP = 52,
-    OP_FUNCTION = 54,
-    OP_FUNCTION_END = 56,
-    OP_FUNCTION_CALL = 57,
-    OP_STORE = 62,
-    OP_COPY_MEMORY_SIZED = 64,
-    OP_DECORATE = 71,
-    OP_IMAGE_WRITE = 99,
-    OP_IADD = 128,
-    OP_ISUB = 130,
-    OP_IMUL = 132,
-    OP_LOGICAL_EQUAL = 164,
-    OP_LOGICAL_NOT_EQUAL = 165,
-    OP_LOGICAL_OR = 166,
-    OP_LOGICAL_AND = 167,
-    OP_LOGICAL_NOT = 168,
-    OP_SELECT = 169,
-    OP_IEQUAL = 170,
-    OP_INOT_EQUAL = 171,
-    OP_UGREATER = 172,
-    OP_SGREATER = 173,
-    OP_UGREATER_EQUAL = 174,
-    OP_SGREATER_EQUAL = 175,
-    OP_ULESS = 176,
-    OP_SLESS = 177,
-    OP_ULESS_EQUAL = 178,
-    OP_SLESS_EQUAL = 179,
-    OP_SHIFT_RIGHT = 194,
-    OP_SHIFT_LEFT = 196,
-    OP_BIT_OR = 197,
-    OP_BIT_XOR = 198,
-    OP_BIT_AND = 199,
-    OP_NOT = 200,
-    OP_EMIT_VERTEX = 218,
-    OP_MEMORY_BARRIER = 225,
-    OP_ATOMIC_STORE = 228,
-    OP_PHI = 245,
-    OP_LOOP_MERGE = 246,
-    OP_SELECTION_MERGE = 247,
-    OP_LABEL = 248,
-    OP_BRANCH = 249,
-    OP_BRANCH_CONDITIONAL = 250,
-    OP_SWITCH = 251,
-    OP_UNREACHABLE = 255,
-    OP_LIFETIME_STOP = 257,
-    OP_NO_LINE = 317,
-    LAST_CORE_OP = 403,
-    DECORATION_SPEC_ID = 1,
-};
 
 // What is left of a block. A stub is a block that nothing branches to but a kept construct names.
 typedef enum block_state { DEAD = 0, MERGE_STUB, CONTINUE_STUB, LIVE } block_state;
@@ -123,92 +62,66 @@ static bool is_whole(const module *m)
 // The id that an instruction of a function defines; 0: none.
 static uint32_t result_at(const module *m, size_t at)
 {
-    const uint32_t op = op_at(m, at);
-    if (op == OP_LABEL) {
-        return m->words[at + 1];
-    }
-    const bool none = op == OP_NOP || op == OP_LINE || op == OP_NO_LINE || op == OP_FUNCTION_END ||
-                      (op >= OP_STORE && op <= OP_COPY_MEMORY_SIZED) || op == OP_IMAGE_WRITE ||
-                      (op >= OP_EMIT_VERTEX && op <= OP_MEMORY_BARRIER) || op == OP_ATOMIC_STORE ||
-                      (op >= OP_LOOP_MERGE && op <= OP_LIFETIME_STOP) || op > LAST_CORE_OP;
-    return none ? 0 : m->words[at + 2];
+    bool has_result, has_type;
+    SpvHasResultAndType((SpvOp)op_at(m, at), &has_result, &has_type);
+    return has_result ? m->words[at + (has_type ? 2 : 1)] : 0;
 }
 
 // ---- constants ----------------------------------------------------------------------------------
 
-static bool evaluate(uint32_t op, const uint32_t v[3], uint32_t *out)
+// -1: not known.
+static int64_t evaluate(uint32_t op, const uint32_t v[3])
 {
     const int32_t a = (int32_t)v[0], b = (int32_t)v[1];
     switch (op) {
-    case OP_IADD:
-        *out = v[0] + v[1];
-        return true;
-    case OP_ISUB:
-        *out = v[0] - v[1];
-        return true;
-    case OP_IMUL:
-        *out = v[0] * v[1];
-        return true;
-    case OP_LOGICAL_EQUAL:
-    case OP_IEQUAL:
-        *out = v[0] == v[1];
-        return true;
-    case OP_LOGICAL_NOT_EQUAL:
-    case OP_INOT_EQUAL:
-        *out = v[0] != v[1];
-        return true;
-    case OP_LOGICAL_OR:
-    case OP_BIT_OR:
-        *out = v[0] | v[1];
-        return true;
-    case OP_LOGICAL_AND:
-    case OP_BIT_AND:
-        *out = v[0] & v[1];
-        return true;
-    case OP_BIT_XOR:
-        *out = v[0] ^ v[1];
-        return true;
-    case OP_LOGICAL_NOT:
-        *out = !v[0];
-        return true;
-    case OP_NOT:
-        *out = ~v[0];
-        return true;
-    case OP_SELECT:
-        *out = v[0] ? v[1] : v[2];
-        return true;
-    case OP_UGREATER:
-        *out = v[0] > v[1];
-        return true;
-    case OP_SGREATER:
-        *out = a > b;
-        return true;
-    case OP_UGREATER_EQUAL:
-        *out = v[0] >= v[1];
-        return true;
-    case OP_SGREATER_EQUAL:
-        *out = a >= b;
-        return true;
-    case OP_ULESS:
-        *out = v[0] < v[1];
-        return true;
-    case OP_SLESS:
-        *out = a < b;
-        return true;
-    case OP_ULESS_EQUAL:
-        *out = v[0] <= v[1];
-        return true;
-    case OP_SLESS_EQUAL:
-        *out = a <= b;
-        return true;
-    case OP_SHIFT_RIGHT:
-        *out = v[1] < 32 ? v[0] >> v[1] : 0;
-        return v[1] < 32;
-    case OP_SHIFT_LEFT:
-        *out = v[1] < 32 ? v[0] << v[1] : 0;
-        return v[1] < 32;
+    case SpvOpIAdd:
+        return (uint32_t)(v[0] + v[1]);
+    case SpvOpISub:
+        return (uint32_t)(v[0] - v[1]);
+    case SpvOpIMul:
+        return (uint32_t)(v[0] * v[1]);
+    case SpvOpLogicalEqual:
+    case SpvOpIEqual:
+        return v[0] == v[1];
+    case SpvOpLogicalNotEqual:
+    case SpvOpINotEqual:
+        return v[0] != v[1];
+    case SpvOpLogicalOr:
+    case SpvOpBitwiseOr:
+        return v[0] | v[1];
+    case SpvOpLogicalAnd:
+    case SpvOpBitwiseAnd:
+        return v[0] & v[1];
+    case SpvOpBitwiseXor:
+        return v[0] ^ v[1];
+    case SpvOpLogicalNot:
+        return !v[0];
+    case SpvOpNot:
+        return (uint32_t)(~v[0]);
+    case SpvOpSelect:
+        return v[0] ? v[1] : v[2];
+    case SpvOpUGreaterThan:
+        return v[0] > v[1];
+    case SpvOpSGreaterThan:
+        return a > b;
+    case SpvOpUGreaterThanEqual:
+        return v[0] >= v[1];
+    case SpvOpSGreaterThanEqual:
+        return a >= b;
+    case SpvOpULessThan:
+        return v[0] < v[1];
+    case SpvOpSLessThan:
+        return a < b;
+    case SpvOpULessThanEqual:
+        return v[0] <= v[1];
+    case SpvOpSLessThanEqual:
+        return a <= b;
+    case SpvOpShiftRightLogical:
+        return v[1] < 32 ? (int64_t)(v[0] >> v[1]) : -1;
+    case SpvOpShiftLeftLogical:
+        return v[1] < 32 ? (int64_t)(v[0] << v[1]) : -1;
     default:
-        return false;
+        return -1;
     }
 }
 
@@ -217,7 +130,8 @@ static void fold(module *m, uint32_t op, uint32_t type, const uint32_t *operands
                  id_info *result)
 {
     uint32_t values[3] = {0}, num_known = 0;
-    if (op < OP_IADD || op > OP_NOT || num > 3 || !(m->ids[type].is_bool || m->ids[type].is_word)) {
+    if (op < SpvOpIAdd || op > SpvOpNot || num > 3 ||
+        !(m->ids[type].is_bool || m->ids[type].is_word)) {
         return;
     }
     for (size_t i = 0; i < num; i++) {
@@ -226,13 +140,15 @@ static void fold(module *m, uint32_t op, uint32_t type, const uint32_t *operands
         num_known += id->known;
         // One of the two decides.
         if (id->known &&
-            ((op == OP_LOGICAL_AND && !id->value) || (op == OP_LOGICAL_OR && id->value))) {
+            ((op == SpvOpLogicalAnd && !id->value) || (op == SpvOpLogicalOr && id->value))) {
             result->known = true;
             result->value = id->value;
             return;
         }
     }
-    result->known = num_known == num && evaluate(op, values, &result->value);
+    const int64_t value = num_known == num ? evaluate(op, values) : -1;
+    result->known = value >= 0;
+    result->value = (uint32_t)value;
 }
 
 static void read_constant(module *m, size_t at)
@@ -240,19 +156,19 @@ static void read_constant(module *m, size_t at)
     const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
     id_info *id = &m->ids[w[2]];
     switch (op) {
-    case OP_CONSTANT_TRUE:
-    case OP_CONSTANT_FALSE:
-    case OP_SPEC_CONSTANT_TRUE:
-    case OP_SPEC_CONSTANT_FALSE:
+    case SpvOpConstantTrue:
+    case SpvOpConstantFalse:
+    case SpvOpSpecConstantTrue:
+    case SpvOpSpecConstantFalse:
         id->known = true;
-        id->value = op == OP_CONSTANT_TRUE || op == OP_SPEC_CONSTANT_TRUE;
+        id->value = op == SpvOpConstantTrue || op == SpvOpSpecConstantTrue;
         break;
-    case OP_CONSTANT:
-    case OP_SPEC_CONSTANT:
+    case SpvOpConstant:
+    case SpvOpSpecConstant:
         id->known = length == 4 && m->ids[w[1]].is_word;
         id->value = w[3];
         break;
-    case OP_SPEC_CONSTANT_OP:
+    case SpvOpSpecConstantOp:
         fold(m, w[3], w[1], w + 4, length - 4, id);
         break;
     default:
@@ -264,12 +180,12 @@ static void read_constant(module *m, size_t at)
 static void specialize(module *m, size_t at, const uint32_t *spec, uint32_t num_spec)
 {
     const uint32_t op = op_at(m, at);
-    if (op < OP_SPEC_CONSTANT_TRUE || op > OP_SPEC_CONSTANT) {
+    if (op < SpvOpSpecConstantTrue || op > SpvOpSpecConstant) {
         return;
     }
     id_info *id = &m->ids[m->words[at + 2]];
     if (id->spec && id->spec <= num_spec) {
-        id->value = op == OP_SPEC_CONSTANT ? spec[id->spec - 1] : spec[id->spec - 1] != 0;
+        id->value = op == SpvOpSpecConstant ? spec[id->spec - 1] : spec[id->spec - 1] != 0;
     } else {
         id->spec = 0;
     }
@@ -279,16 +195,16 @@ static void read_globals(module *m, const uint32_t *spec, uint32_t num_spec)
 {
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
         const uint32_t *w = m->words + at, op = op_at(m, at);
-        if (op == OP_DECORATE && w[2] == DECORATION_SPEC_ID) {
+        if (op == SpvOpDecorate && w[2] == SpvDecorationSpecId) {
             m->ids[w[1]].spec = 1 + w[3];
-        } else if (op == OP_TYPE_BOOL) {
+        } else if (op == SpvOpTypeBool) {
             m->ids[w[1]].is_bool = true;
-        } else if (op == OP_TYPE_INT) {
+        } else if (op == SpvOpTypeInt) {
             m->ids[w[1]].is_word = w[2] == 32;
-        } else if (op >= OP_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP) {
+        } else if (op >= SpvOpConstantTrue && op <= SpvOpSpecConstantOp) {
             read_constant(m, at);
             specialize(m, at, spec, num_spec);
-        } else if (op == OP_FUNCTION) {
+        } else if (op == SpvOpFunction) {
             m->ids[w[2]].at = (uint32_t)at;
         }
     }
@@ -350,18 +266,18 @@ static bool leave(module *m, size_t at, uint32_t block, uint32_t merge)
 {
     const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
     bool ordered = true;
-    if (op == OP_BRANCH_CONDITIONAL && merge && m->ids[w[1]].known) {
+    if (op == SpvOpBranchConditional && merge && m->ids[w[1]].known) {
         m->ids[block].only = m->ids[w[1]].value ? w[2] : w[3];
         return reach(m, at, m->ids[block].only, LIVE);
     }
     if (merge) {
         ordered = reach(m, at, merge, MERGE_STUB);
     }
-    if (op == OP_BRANCH) {
+    if (op == SpvOpBranch) {
         ordered = reach(m, at, w[1], LIVE) && ordered;
-    } else if (op == OP_BRANCH_CONDITIONAL) {
+    } else if (op == SpvOpBranchConditional) {
         ordered = reach(m, at, w[2], LIVE) && reach(m, at, w[3], LIVE) && ordered;
-    } else if (op == OP_SWITCH) { // selector, default, literals of 32 bits with their targets
+    } else if (op == SpvOpSwitch) { // selector, default, literals of 32 bits with their targets
         for (uint32_t i = 2; i < length; i += 2) {
             ordered = reach(m, at, w[i], LIVE) && ordered;
         }
@@ -384,19 +300,19 @@ static bool read_live(module *m, size_t at, uint32_t block, uint32_t *merge)
 {
     const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
     switch (op) {
-    case OP_FUNCTION_CALL:
+    case SpvOpFunctionCall:
         call(m, w[3]);
         return true;
-    case OP_PHI:
+    case SpvOpPhi:
         return read_phi(m, at, block);
-    case OP_SELECTION_MERGE:
+    case SpvOpSelectionMerge:
         *merge = w[1];
         return true;
-    case OP_LOOP_MERGE:
+    case SpvOpLoopMerge:
         return enter_loop(m, at, block);
-    case OP_BRANCH:
-    case OP_BRANCH_CONDITIONAL:
-    case OP_SWITCH:
+    case SpvOpBranch:
+    case SpvOpBranchConditional:
+    case SpvOpSwitch:
         return leave(m, at, block, *merge);
     default:
         if (length > 3) {
@@ -408,8 +324,8 @@ static bool read_live(module *m, size_t at, uint32_t block, uint32_t *merge)
 
 static void find_blocks(module *m, size_t at)
 {
-    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
-        if (op_at(m, at) == OP_LABEL) {
+    for (; op_at(m, at) != SpvOpFunctionEnd; at = next(m, at)) {
+        if (op_at(m, at) == SpvOpLabel) {
             m->ids[m->words[at + 1]].at = (uint32_t)at;
         }
     }
@@ -419,16 +335,16 @@ static bool thin(module *m, size_t at)
 {
     uint32_t block = 0, merge = 0;
     bool read = true, first = true;
-    for (; op_at(m, at) != OP_FUNCTION_END && read; at = next(m, at)) {
+    for (; op_at(m, at) != SpvOpFunctionEnd && read; at = next(m, at)) {
         const uint32_t op = op_at(m, at);
-        if (op == OP_LABEL) {
+        if (op == SpvOpLabel) {
             block = m->words[at + 1];
             merge = 0;
             m->ids[block].state = first ? LIVE : m->ids[block].state;
             first = false;
         } else if (block && m->ids[block].state == LIVE) {
             read = read_live(m, at, block, &merge);
-        } else if (op > LAST_CORE_OP) {
+        } else if (op > SpvOpPtrDiff) {
             read = false; // it is not known which ids it defines
         }
     }
@@ -438,12 +354,12 @@ static bool thin(module *m, size_t at)
 // All of it stays, and what it calls.
 static void keep_whole(module *m, size_t at)
 {
-    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
+    for (; op_at(m, at) != SpvOpFunctionEnd; at = next(m, at)) {
         const uint32_t *w = m->words + at;
-        if (op_at(m, at) == OP_LABEL) {
+        if (op_at(m, at) == SpvOpLabel) {
             m->ids[w[1]].state = LIVE;
             m->ids[w[1]].only = 0;
-        } else if (op_at(m, at) == OP_FUNCTION_CALL) {
+        } else if (op_at(m, at) == SpvOpFunctionCall) {
             call(m, w[3]);
         }
     }
@@ -452,7 +368,7 @@ static void keep_whole(module *m, size_t at)
 static void read_functions(module *m)
 {
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
-        if (op_at(m, at) == OP_ENTRY_POINT) {
+        if (op_at(m, at) == SpvOpEntryPoint) {
             call(m, m->words[at + 2]);
         }
     }
@@ -483,16 +399,16 @@ static void emit_constant(module *m, size_t at)
 {
     const uint32_t *w = m->words + at, op = op_at(m, at);
     const id_info *id = &m->ids[w[2]];
-    if (op == OP_SPEC_CONSTANT_COMPOSITE) {
-        emit(m, w, OP_CONSTANT_COMPOSITE, w[0] >> 16);
-    } else if (op < OP_SPEC_CONSTANT_TRUE || (op == OP_SPEC_CONSTANT_OP && !id->known)) {
+    if (op == SpvOpSpecConstantComposite) {
+        emit(m, w, SpvOpConstantComposite, w[0] >> 16);
+    } else if (op < SpvOpSpecConstantTrue || (op == SpvOpSpecConstantOp && !id->known)) {
         emit_same(m, at);
     } else if (m->ids[w[1]].is_bool) {
-        emit(m, w, id->value ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE, 3);
+        emit(m, w, id->value ? SpvOpConstantTrue : SpvOpConstantFalse, 3);
     } else if (id->known || id->spec) {
-        emit(m, (uint32_t[]){0, w[1], w[2], id->value}, OP_CONSTANT, 4);
+        emit(m, (uint32_t[]){0, w[1], w[2], id->value}, SpvOpConstant, 4);
     } else {
-        emit(m, w, OP_CONSTANT, w[0] >> 16);
+        emit(m, w, SpvOpConstant, w[0] >> 16);
     }
 }
 
@@ -508,18 +424,18 @@ static void emit_phi(module *m, size_t at, uint32_t block)
             to[kept++] = w[i + 1];
         }
     }
-    to[0] = kept << 16 | OP_PHI;
+    to[0] = kept << 16 | SpvOpPhi;
     m->written += kept;
 }
 
 static void emit_live(module *m, size_t at, uint32_t block)
 {
     const uint32_t op = op_at(m, at), only = m->ids[block].only;
-    if (op == OP_PHI) {
+    if (op == SpvOpPhi) {
         emit_phi(m, at, block);
-    } else if (op == OP_BRANCH_CONDITIONAL && only) {
-        emit(m, (uint32_t[]){0, only}, OP_BRANCH, 2);
-    } else if (op != OP_SELECTION_MERGE || !only) {
+    } else if (op == SpvOpBranchConditional && only) {
+        emit(m, (uint32_t[]){0, only}, SpvOpBranch, 2);
+    } else if (op != SpvOpSelectionMerge || !only) {
         emit_same(m, at);
     }
 }
@@ -527,19 +443,19 @@ static void emit_live(module *m, size_t at, uint32_t block)
 static void emit_stub(module *m, uint32_t block)
 {
     const id_info *b = &m->ids[block];
-    emit(m, (uint32_t[]){0, block}, OP_LABEL, 2);
+    emit(m, (uint32_t[]){0, block}, SpvOpLabel, 2);
     if (b->state == CONTINUE_STUB) {
-        emit(m, (uint32_t[]){0, b->header}, OP_BRANCH, 2);
+        emit(m, (uint32_t[]){0, b->header}, SpvOpBranch, 2);
     } else {
-        emit(m, (uint32_t[]){0}, OP_UNREACHABLE, 1);
+        emit(m, (uint32_t[]){0}, SpvOpUnreachable, 1);
     }
 }
 
 static void emit_function(module *m, size_t at)
 {
     uint32_t block = 0;
-    for (; op_at(m, at) != OP_FUNCTION_END; at = next(m, at)) {
-        if (op_at(m, at) == OP_LABEL) {
+    for (; op_at(m, at) != SpvOpFunctionEnd; at = next(m, at)) {
+        if (op_at(m, at) == SpvOpLabel) {
             block = m->words[at + 1];
             if (m->ids[block].state == MERGE_STUB || m->ids[block].state == CONTINUE_STUB) {
                 emit_stub(m, block);
@@ -561,18 +477,18 @@ static void mark_gone(module *m)
     bool called = true;
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
         const uint32_t *w = m->words + at, op = op_at(m, at);
-        if (op == OP_FUNCTION) {
+        if (op == SpvOpFunction) {
             called = m->ids[w[2]].called;
             block = 0;
-        } else if (op == OP_FUNCTION_END) {
+        } else if (op == SpvOpFunctionEnd) {
             called = true;
             block = 0;
-        } else if (op == OP_LABEL) {
+        } else if (op == SpvOpLabel) {
             block = w[1];
         }
         // The label of a stub stays.
         if (!called || (block && m->ids[block].state == DEAD) ||
-            (block && m->ids[block].state != LIVE && op != OP_LABEL)) {
+            (block && m->ids[block].state != LIVE && op != SpvOpLabel)) {
             m->ids[result_at(m, at)].gone = true;
         }
     }
@@ -585,18 +501,18 @@ static void emit_all(module *m)
     m->written = HEADER;
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
         const uint32_t *w = m->words + at, op = op_at(m, at);
-        if (op == OP_FUNCTION) {
+        if (op == SpvOpFunction) {
             called = m->ids[w[2]].called;
             if (called) {
                 emit_function(m, at);
             }
-            while (op_at(m, at) != OP_FUNCTION_END) {
+            while (op_at(m, at) != SpvOpFunctionEnd) {
                 at = next(m, at);
             }
-        } else if (op >= OP_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP) {
+        } else if (op >= SpvOpConstantTrue && op <= SpvOpSpecConstantOp) {
             emit_constant(m, at);
-        } else if (!((op == OP_NAME || op == OP_DECORATE) && m->ids[w[1]].gone) &&
-                   !(op == OP_DECORATE && w[2] == DECORATION_SPEC_ID)) {
+        } else if (!((op == SpvOpName || op == SpvOpDecorate) && m->ids[w[1]].gone) &&
+                   !(op == SpvOpDecorate && w[2] == SpvDecorationSpecId)) {
             emit_same(m, at);
         }
     }
