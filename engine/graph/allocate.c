@@ -168,10 +168,12 @@ static tyn_result make_object(tyn_graph *g, const resource *r, phys *p)
                                 : make_image(g, r, p);
 }
 
-// In a heap of its own, so that it outlives the others, or with the others of this compilation.
+// In a heap of its own, so that it outlives the others, in a shared block, or with the others of this compilation.
 static tyn_heap *heap_of(tyn_graph *g, const resource *r, phys *p)
 {
-    return r->kind == RESOURCE_HISTORY ? &p->heap : &g->heap;
+    return p->shared                     ? &graph_find_block(g, p->block)->heap
+           : r->kind == RESOURCE_HISTORY ? &p->heap
+                                         : &g->heap;
 }
 
 static tyn_result draft_resource(tyn_graph *g, const resource *r, phys *p, VkDeviceSize *expected)
@@ -237,13 +239,11 @@ tyn_result graph_draft_resources(tyn_graph *g)
     return TYN_OK;
 }
 
-// Of an object without memory. Places that are shared have been bound.
+// Of an object without memory.
 static tyn_result bind_object(tyn_graph *g, const tyn_heap *heap, const resource *r, phys *p)
 {
-    if (!p->shared) {
-        TYN_TRY(p->image ? tyn_heap_bind_image(g->dev, heap, p->image, p->place)
-                         : tyn_heap_bind_buffer(g->dev, heap, p->buffer, p->place, NULL));
-    }
+    TYN_TRY(p->image ? tyn_heap_bind_image(g->dev, heap, p->image, p->place)
+                     : tyn_heap_bind_buffer(g->dev, heap, p->buffer, p->place, NULL));
     return p->image ? make_views(g, r, p) : create_texel_views(g, p, r->name);
 }
 

@@ -215,6 +215,5 @@ tyn_result graph_commit(tyn_graph *g, draft *d)
         TYN_TRY(tyn_heap_allocate(g->dev, &g->blocks[b].heap));
     }
     TYN_TRY(tyn_heap_allocate(g->dev, &g->staging_heap));
-    TYN_TRY(graph_bind_shared(g));
     return graph_bind_objects(g);
 }

@@ -79,7 +79,7 @@ typedef struct phys {
     VkDeviceSize bytes;
     bool shared;    // lies in a block with others, some of them in the same place (share.h)
     uint32_t block; // its id
-    VkDeviceSize offset, size;
+    VkDeviceSize size;
     VkImageUsageFlags image_usage;
     VkBufferUsageFlags buffer_usage;
     uint32_t texel_uses; // bit i: it is read as texels in graph_texel_formats[i]
@@ -93,7 +93,7 @@ typedef struct phys {
     tyn_heap heap;     // HISTORY: its own, so that it outlives the others
     uint64_t made;     // graph.frame when it was made
     bool kept;         // taken over from the compilation before
-    tyn_place place;   // in its heap, unless it is shared
+    tyn_place place;   // in its heap
     host_buffer staging; // UPLOAD, big: waits to be copied
     uint64_t staged;     // content hash in staging; 0 = none
     host_buffer readback;
@@ -337,7 +337,7 @@ tyn_result graph_keep_places(tyn_graph *g, heritage *old);
 // Places for the resources that are `shared`, in blocks of before unless `anew`; counts into g->transient_bytes the bytes
 // that none would have for good if all were placed anew.
 tyn_result graph_draft_shared(tyn_graph *g, bool anew);
-tyn_result graph_bind_shared(tyn_graph *g);
+shared_block *graph_find_block(const tyn_graph *g, uint32_t id); // NULL: there is none
 bool graph_block_used(const tyn_graph *g, const shared_block *block);
 // Of what a node makes and works in: in all, and how much of it lies where what other nodes make or work in does.
 void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint64_t *shared);

@@ -10,7 +10,8 @@ static const uint32_t NO_TYPE = UINT32_MAX; // of memory: nothing is placed ther
 bool graph_overlap(const phys *a, const phys *b)
 {
     return a->shared && b->shared && a->block && a->block == b->block &&
-           a->offset < b->offset + b->size && b->offset < a->offset + a->size;
+           a->place.offset < b->place.offset + b->size &&
+           b->place.offset < a->place.offset + a->size;
 }
 
 // Which nodes read something of which, at first or second hand: [reader * num_nodes + read]. NULL: out of memory.
@@ -34,7 +35,7 @@ static bool *find_followers(const tyn_graph *g)
     return follows;
 }
 
-static shared_block *find_block(const tyn_graph *g, uint32_t id)
+shared_block *graph_find_block(const tyn_graph *g, uint32_t id)
 {
     for (uint32_t b = 0; b < g->num_blocks; b++) {
         if (g->blocks[b].id == id) {
@@ -67,8 +68,8 @@ static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_sha
         .unused = !g->nodes[maker].needed,
     };
     if (is_placed(p)) {
-        item->block = (uint32_t)(find_block(g, p->block) - g->blocks);
-        item->offset = p->offset;
+        item->block = (uint32_t)(graph_find_block(g, p->block) - g->blocks);
+        item->offset = p->place.offset;
     }
 }
 
@@ -77,27 +78,12 @@ static void settle(tyn_graph *g, uint32_t index, const tyn_share_item *item)
     const shared_block *block = &g->blocks[item->block];
     phys *p = &g->phys[index];
     p->block = block->id;
-    p->offset = item->offset;
+    p->place = (tyn_place){.offset = item->offset};
     p->size = item->size;
     if (block->made != g->frame) { // its first layout waits for what used the place before
         p->track = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
     }
-}
-
-tyn_result graph_bind_shared(tyn_graph *g)
-{
-    for (uint32_t i = 0; i < g->num_phys; i++) {
-        const phys *p = &g->phys[i];
-        if (p->kept || !is_placed(p)) {
-            continue;
-        }
-        const tyn_heap *heap = &find_block(g, p->block)->heap;
-        const tyn_place place = {.offset = p->offset};
-        TYN_TRY(p->image ? tyn_heap_bind_image(g->dev, heap, p->image, place)
-                         : tyn_heap_bind_buffer(g->dev, heap, p->buffer, place, NULL));
-    }
-    return TYN_OK;
 }
 
 // Does a needed node make it?
@@ -118,20 +104,20 @@ static bool is_needed(const tyn_graph *g, uint32_t index)
 static VkDeviceSize shared_bytes(const tyn_graph *g, uint32_t index)
 {
     const phys *p = &g->phys[index];
-    const VkDeviceSize end = p->offset + p->size;
-    VkDeviceSize at = p->offset, shared = 0;
+    const VkDeviceSize end = p->place.offset + p->size;
+    VkDeviceSize at = p->place.offset, shared = 0;
     while (at < end) { // from `at` on: to where those that lie there reach, or on to the next
         VkDeviceSize reach = at, next = end;
         for (uint32_t i = 0; i < g->num_phys; i++) {
             const phys *q = &g->phys[i];
-            if (i == index || !graph_overlap(p, q) || q->offset + q->size <= at ||
+            if (i == index || !graph_overlap(p, q) || q->place.offset + q->size <= at ||
                 !is_needed(g, i)) {
                 continue;
             }
-            if (q->offset > at) {
-                next = q->offset < next ? q->offset : next;
+            if (q->place.offset > at) {
+                next = q->place.offset < next ? q->place.offset : next;
             } else {
-                reach = q->offset + q->size > reach ? q->offset + q->size : reach;
+                reach = q->place.offset + q->size > reach ? q->place.offset + q->size : reach;
             }
         }
         reach = reach < end ? reach : end;
