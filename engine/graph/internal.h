@@ -357,6 +357,8 @@ VkImageMemoryBarrier2 graph_image_barrier(const resource *r, VkImage image, cons
 void graph_memory_barrier(const tyn_graph *g, VkCommandBuffer cmd, const tyn_barrier *b);
 // What a node does, in the recorder's mode.
 void recorder_run(tyn_recorder *r);
+// Of each node in turn, without a command buffer: those of `run_node`, or of NULL all that are needed. Up to a failure.
+tyn_result recorder_run_all(const tyn_recorder *like, const bool *run_node);
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);
 // Before a node: what it makes may lie where others are; whoever used that memory has to be done with it.

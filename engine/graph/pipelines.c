@@ -33,25 +33,11 @@ void graph_forget_pipelines(tyn_graph *g)
     let_go(&g->wanted);
 }
 
-static tyn_result want_all(tyn_graph *g)
-{
-    for (uint32_t i = 0; i < g->num_nodes; i++) {
-        if (g->nodes[i].needed) {
-            tyn_recorder r = {.g = g, .node = i, .mode = RECORD_PIPELINES};
-            recorder_run(&r);
-            if (r.result != TYN_OK) {
-                return r.result;
-            }
-        }
-    }
-    return TYN_OK;
-}
-
 tyn_result graph_make_pipelines(tyn_graph *g)
 {
     pipeline_list before = g->wanted; // let go of after those that are still wanted
     g->wanted = (pipeline_list){0};
-    tyn_result result = want_all(g);
+    tyn_result result = recorder_run_all(&(tyn_recorder){.g = g, .mode = RECORD_PIPELINES}, NULL);
     let_go(&before);
     for (uint32_t i = 0; result == TYN_OK && i < g->wanted.count; i++) {
         tyn_variant *v = g->wanted.items[i];

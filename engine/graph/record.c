@@ -254,22 +254,13 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
 // Descriptor sets of all that will be launched. What follows cannot fail, so that a frame that fails appends nothing.
 static tyn_result make_sets(tyn_graph *g, const bool *run_node)
 {
-    const tyn_result reset = tyn_vk_check(
+    TYN_TRY(tyn_vk_check(
         g->dev,
         g->dev->vk.ResetDescriptorPool(g->dev->device, g->slots[g->frame % g->num_slots].pool, 0),
-        "vkResetDescriptorPool");
+        "vkResetDescriptorPool"));
     g->sets.count = g->sets.next = 0;
     memset(g->sets.made, 0, sizeof g->sets.made);
-    for (uint32_t i = 0; reset == TYN_OK && i < g->num_nodes; i++) {
-        tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SETS};
-        if (run_node[i]) {
-            recorder_run(&r);
-        }
-        if (r.result != TYN_OK) {
-            return r.result;
-        }
-    }
-    return reset;
+    return recorder_run_all(&(tyn_recorder){.g = g, .mode = RECORD_SETS}, run_node);
 }
 
 static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)

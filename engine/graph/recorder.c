@@ -665,3 +665,18 @@ void recorder_run(tyn_recorder *r)
     }
     n->pass->record(r, n->params);
 }
+
+tyn_result recorder_run_all(const tyn_recorder *like, const bool *run_node)
+{
+    for (uint32_t i = 0; i < like->g->num_nodes; i++) {
+        tyn_recorder r = *like;
+        r.node = i;
+        if (run_node ? run_node[i] : node_of(&r)->needed) {
+            recorder_run(&r);
+        }
+        if (r.result != TYN_OK) {
+            return r.result;
+        }
+    }
+    return TYN_OK;
+}

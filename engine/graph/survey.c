@@ -36,17 +36,8 @@ void graph_cull(tyn_graph *g)
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage)
 {
     *s = (survey){.hash = TYN_HASH_SEED};
-    for (uint32_t i = 0; i < g->num_nodes; i++) {
-        if (!g->nodes[i].needed) {
-            continue;
-        }
-        tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SURVEY, .survey = s, .usage = usage};
-        recorder_run(&r);
-        if (r.result != TYN_OK) {
-            return r.result;
-        }
-    }
-    return TYN_OK;
+    return recorder_run_all(
+        &(tyn_recorder){.g = g, .mode = RECORD_SURVEY, .survey = s, .usage = usage}, NULL);
 }
 
 uint64_t graph_structure(const tyn_graph *g, const survey *s)
