@@ -212,30 +212,24 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     return result;
 }
 
-// Bytes of a pixel of a picture; 0: the output is none.
-static uint32_t pixel_bytes(tyn_output output)
-{
-#define ROW(constant, bit, name, bytes, set)                                                       \
-    case 1 << bit:                                                                                 \
-        return bytes;
-    switch ((int)output) {
-        TYN_OUTPUTS(ROW)
-    }
-#undef ROW
-    return 0;
-}
+// Bytes of a pixel of a picture, by the bit of its output; 0: it is none.
+#define ROW(constant, bit, name, bytes, set) [bit] = bytes,
+static const uint32_t pixel_bytes[TYN_NUM_OUTPUTS] = {TYN_OUTPUTS(ROW)};
 
 const void *tyn_offline_output(tyn_offline *off, tyn_output output)
 {
     const char *from = off ? tyn_context_output(off->context, output) : NULL;
-    const uint32_t bytes = pixel_bytes(output);
-    const shown_part *shown = off ? &off->shown : NULL;
-    if (!from || !bytes || !memcmp(shown->size, shown->rendered, sizeof shown->size)) {
-        return from;
+    if (!from) {
+        return NULL;
     }
+    const shown_part *shown = &off->shown;
     uint32_t bit = 0;
     while (!((uint32_t)output >> bit & 1)) {
         bit++;
+    }
+    const uint32_t bytes = pixel_bytes[bit];
+    if (!bytes || !memcmp(shown->size, shown->rendered, sizeof shown->size)) {
+        return from;
     }
     const size_t row = (size_t)bytes * shown->size[0],
                  rendered = (size_t)bytes * shown->rendered[0];
