@@ -24,24 +24,16 @@ static void destroy(const tyn_graph *g, retired *r)
     tyn_device *dev = g->dev;
     const tyn_procs *vk = &dev->vk;
     switch ((int)r->type) {
-    case VK_OBJECT_TYPE_IMAGE_VIEW:
-        vk->DestroyImageView(dev->device, (VkImageView)r->handle, NULL);
+#define DESTROY(TYPE, Type)                                                                        \
+    case VK_OBJECT_TYPE_##TYPE:                                                                    \
+        vk->Destroy##Type(dev->device, (Vk##Type)r->handle, NULL);                                 \
         break;
-    case VK_OBJECT_TYPE_IMAGE:
-        vk->DestroyImage(dev->device, (VkImage)r->handle, NULL);
-        break;
-    case VK_OBJECT_TYPE_BUFFER_VIEW:
-        vk->DestroyBufferView(dev->device, (VkBufferView)r->handle, NULL);
-        break;
-    case VK_OBJECT_TYPE_BUFFER:
-        vk->DestroyBuffer(dev->device, (VkBuffer)r->handle, NULL);
-        break;
-    case VK_OBJECT_TYPE_DESCRIPTOR_POOL:
-        vk->DestroyDescriptorPool(dev->device, (VkDescriptorPool)r->handle, NULL);
-        break;
-    case VK_OBJECT_TYPE_QUERY_POOL:
-        vk->DestroyQueryPool(dev->device, (VkQueryPool)r->handle, NULL);
-        break;
+        DESTROY(IMAGE_VIEW, ImageView)
+        DESTROY(IMAGE, Image)
+        DESTROY(BUFFER_VIEW, BufferView)
+        DESTROY(BUFFER, Buffer)
+        DESTROY(DESCRIPTOR_POOL, DescriptorPool)
+        DESTROY(QUERY_POOL, QueryPool)
     default:
         tyn_heap_finish(dev, &r->heap);
         break;
