@@ -8,11 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *state_name(tyn_node_state state)
-{
-    static const char *const names[] = {"ran", "unchanged", "culled", "empty"};
-    return names[state];
-}
+static const char *const state_names[] = {"ran", "unchanged", "culled", "empty"};
 
 static void add_work(tyn_node_report *node, const char *name, double amount)
 {
@@ -95,7 +91,7 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
     for (uint32_t i = 0; i < count; i++) {
         const tyn_node_stats *s = &stats[i];
         nodes[i] = (tyn_node_report){.name = s->name,
-                                     .state = state_name(s->state),
+                                     .state = state_names[s->state],
                                      .gpu_ms = s->gpu_ms,
                                      .cpu_ms = s->cpu_ms,
                                      .dispatches = s->dispatches,

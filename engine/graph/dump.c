@@ -37,11 +37,9 @@ static void put_line(void *user, const char *line)
     put(user, "%s\n", line);
 }
 
-static const char *kind_name(resource_kind kind)
-{
-    static const char *const names[] = {"persistent", "transient", "imported", "upload", "history"};
-    return names[kind];
-}
+static const char *const kind_names[] = {"persistent", "transient", "imported", "upload",
+                                         "history"};
+static const char *const dir_names[] = {"in", "out", "inout", "scratch"};
 
 static void print_shape(char *out, size_t size, const resource *r)
 {
@@ -55,28 +53,22 @@ static void print_shape(char *out, size_t size, const resource *r)
     }
 }
 
-static const char *dir_name(tyn_port_dir dir)
-{
-    static const char *const names[] = {"in", "out", "inout", "scratch"};
-    return names[dir];
-}
-
 static void put_ports(text *t, const tyn_graph *g, const node *n)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
         const tyn_port *port = &n->pass->ports[p];
         if (!n->res[p]) {
-            put(t, "    %-7s %s: none\n", dir_name(port->dir), port->name);
+            put(t, "    %-7s %s: none\n", dir_names[port->dir], port->name);
             continue;
         }
         const resource *r = &g->resources[n->res[p] - 1];
         char shape[96];
         print_shape(shape, sizeof shape, r);
-        put(t, "    %-7s %s", dir_name(port->dir), port->name);
+        put(t, "    %-7s %s", dir_names[port->dir], port->name);
         if (strcmp(port->name, r->name)) {
             put(t, " = %s", r->name);
         }
-        put(t, " (%s, %s)%s%s\n", shape, kind_name(r->kind), port->meaning ? ": " : "",
+        put(t, " (%s, %s)%s%s\n", shape, kind_names[r->kind], port->meaning ? ": " : "",
             port->meaning ? port->meaning : "");
     }
 }
@@ -132,7 +124,7 @@ static char *dump_text(tyn_graph *g, const tyn_pass_desc *const *passes)
         if (outside) {
             char shape[96];
             print_shape(shape, sizeof shape, r);
-            put(&t, "%s %s (%s)\n", kind_name(r->kind), r->name, shape);
+            put(&t, "%s %s (%s)\n", kind_names[r->kind], r->name, shape);
         }
     }
     for (uint32_t i = 0; i < g->num_nodes; i++) {
@@ -201,7 +193,7 @@ static char *dump_dot(tyn_graph *g, const tyn_pass_desc *const *passes)
         if (r->kind != RESOURCE_SCRATCH) {
             print_shape(shape, sizeof shape, r);
             put(&t, "  r%u [label=\"%s\\n%s\\n%s\" shape=ellipse];\n", i, r->name, shape,
-                kind_name(r->kind));
+                kind_names[r->kind]);
         }
     }
     for (uint32_t i = 0; passes && passes[i]; i++) {
