@@ -162,7 +162,7 @@ static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     params.first_sample *= params.chunks * params.num_samples;
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {
         [PATH_BALANCE_PORT_STATE] =
-            tyn_graph_history_buffer(g, "path_balance", tyn_path_balance_state_size(), 1),
+            tyn_graph_history_buffer(g, "path_balance", sizeof(struct path_balance_state), 1),
         [PATH_BALANCE_PORT_AREAS] = job->refs.areas,
     };
     tyn_connect_path_scene(refs, job, bricks);
@@ -210,7 +210,7 @@ static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     params.num_samples *= FLUX_SAMPLE_PATHS / params.chunks;
     tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {
         [PATH_FLUXES_PORT_STATE] =
-            tyn_graph_history_buffer(g, "path_fluxes", tyn_path_fluxes_state_size(), 1),
+            tyn_graph_history_buffer(g, "path_fluxes", sizeof(struct path_fluxes_state), 1),
     };
     tyn_connect_path_scene(refs, job, bricks);
     tyn_graph_refuse(g, check_fluxes(job));

@@ -5,11 +5,6 @@
 #include "shaders/path/path_args.h"
 #include "passes/path_balance_tables.h"
 
-uint64_t tyn_path_balance_state_size(void)
-{
-    return sizeof(struct path_balance_state);
-}
-
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;

@@ -7,7 +7,7 @@
 // clang-format off
 #define PATH_BALANCE_PORTS(X) \
     TYN_PATH_SCENE(X, PATH_BALANCE), \
-    X(PATH_BALANCE, STATE, state, INOUT, BUFFER, "tyn_path_balance_state_size bytes: a history"), \
+    X(PATH_BALANCE, STATE, state, INOUT, BUFFER, "struct path_balance_state: a history"), \
     X(PATH_BALANCE, BALANCE, balance, OUT, BUFFER, "tyn_balance: power entering, emitted, absorbed, escaped, W"), \
     X(PATH_BALANCE, RESULT, result, OUT, BUFFER, "struct path_balance_result: values and standard errors"), \
     X(PATH_BALANCE, COUNTERS, counters, OUT, BUFFER, \
@@ -16,6 +16,3 @@
     X(PATH_BALANCE, AREAS, areas, OPTIONAL, BUFFER, "struct surface_table and cells, optional")
 // clang-format on
 TYN_PASS(PATH_BALANCE, path_balance);
-
-// Bytes of its history.
-uint64_t tyn_path_balance_state_size(void);

@@ -4,11 +4,6 @@
 #include "shaders/path/path_args.h"
 #include "passes/path_fluxes_tables.h"
 
-uint64_t tyn_path_fluxes_state_size(void)
-{
-    return sizeof(struct path_fluxes_state);
-}
-
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;

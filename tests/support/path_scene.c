@@ -297,7 +297,7 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
     tyn_graph_begin(t->graph);
     path_scene_declare(t, s, refs);
     refs[PATH_BALANCE_PORT_STATE] =
-        tyn_graph_history_buffer(t->graph, "state", tyn_path_balance_state_size(), 1);
+        tyn_graph_history_buffer(t->graph, "state", sizeof(struct path_balance_state), 1);
     s->params.first_sample = 0;
     s->params.chunks = 4;
     s->params.threads = 1024;
@@ -318,7 +318,7 @@ const tyn_fluxes *path_scene_fluxes(gpu_test *t, path_scene *s, uint32_t samples
     tyn_graph_begin(t->graph);
     path_scene_declare(t, s, refs);
     refs[PATH_FLUXES_PORT_STATE] =
-        tyn_graph_history_buffer(t->graph, "state", tyn_path_fluxes_state_size(), 1);
+        tyn_graph_history_buffer(t->graph, "state", sizeof(struct path_fluxes_state), 1);
     memcpy(s->params.box[1], s->medium.extent, sizeof s->params.box[1]);
     s->params.first_sample = 0;
     s->params.chunks = 4;
