@@ -12,9 +12,9 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     *tyn_graph_mode(ctx->graph) = (tyn_record_mode){.recompute = frame->recompute,
                                                     .setup_only = frame->setup_only,
                                                     .counters = ctx->readback,
+                                                    .inspect = ctx->readback ? ctx->inspect : NULL,
                                                     .background = frame->background,
                                                     .idle = frame->idle};
-    tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     tyn_frame_upload(ctx, frame, &job.refs);
     for (uint32_t i = 0; i < job.num_hooks; i++) {
         if (job.hooks[i]->prepare) {

@@ -51,7 +51,6 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_resources = 0;
     g->num_nodes = 0;
     g->num_outputs = 0;
-    g->inspect = NULL;
     g->params_used = 0;
     g->mode = (tyn_record_mode){0};
     g->current = false;
@@ -215,17 +214,12 @@ void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback
     }
 }
 
-void tyn_graph_inspect(tyn_graph *g, const char *pass)
-{
-    g->inspect = pass;
-}
-
-// What was asked for by tyn_graph_inspect, if this node makes it.
+// What tyn_record_mode.inspect asks for, if this node makes it.
 static void inspect_node(tyn_graph *g, const tyn_pass_desc *pass, const tyn_ref *refs)
 {
     static const char name[] = "inspect";
     const tyn_ref ref = refs[pass->debug_port];
-    if (!g->inspect || strcmp(g->inspect, pass->name) || !ref.resource ||
+    if (!g->mode.inspect || strcmp(g->mode.inspect, pass->name) || !ref.resource ||
         g->resources[ref.resource - 1].dim == TYN_BUFFER) {
         return;
     }

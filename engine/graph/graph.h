@@ -37,6 +37,9 @@ typedef struct tyn_record_mode {
     bool setup_only; // only uploads and nodes that depend on the media alone
     // What passes count is read back, as outputs named as the passes: by the next nodes that are added. Else it keeps nothing alive.
     bool counters;
+    // What a node of this pass makes, the image at its debug port, is read back as the output "inspect"; of several such nodes
+    // the last. NULL: none.
+    const char *inspect;
     // Pipelines are compiled beside tyn_graph_compile and tyn_graph_record, which return TYN_PENDING until they are there:
     // compile keeps what was compiled before, and record only takes host images to their `after`.
     bool background;
@@ -48,10 +51,6 @@ tyn_record_mode *tyn_graph_mode(tyn_graph *g);
 
 // What was recorded was not executed: all is made anew. The GPU must be done with earlier records.
 void tyn_graph_forget(tyn_graph *g);
-
-// Has what a node of this pass makes, the image at its debug port, read back as the output "inspect";
-// of several such nodes the last. Counts until the next tyn_graph_begin.
-void tyn_graph_inspect(tyn_graph *g, const char *pass);
 
 // ---- compile, record ------------------------------------------------------------------------
 

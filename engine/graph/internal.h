@@ -183,8 +183,7 @@ struct tyn_graph {
     uint32_t params_used, params_cap;
     output outputs[32];
     uint32_t num_outputs;
-    const char *inspect; // pass whose debug port is wanted; NULL = none
-    uint64_t unique;     // ever-changing content
+    uint64_t unique; // ever-changing content
     tyn_record_mode mode;
     bool poison; // tests: what a node has not written is NaN
     // compiled
