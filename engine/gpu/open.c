@@ -185,18 +185,16 @@ static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
     return c;
 }
 
-static int rank(const candidate *c)
+// By VkPhysicalDeviceType.
+static const struct {
+    const char *name;
+    int rank; // the highest is chosen
+} kinds[] = {{"other", 0}, {"integrated", 2}, {"discrete", 3}, {"virtual", 1}, {"cpu", 0}};
+
+static size_t kind_of(const candidate *c)
 {
-    switch (c->properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return 3;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return 1;
-    default:
-        return 0;
-    }
+    const size_t type = (size_t)c->properties.deviceType;
+    return type < sizeof kinds / sizeof *kinds ? type : 0;
 }
 
 enum { MAX_DEVICES = 16 };
@@ -222,7 +220,7 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
         candidate c = inspect(&dev->vk, devices[i]);
         bool wanted = !select ||
                       (by_index ? i == index : strcasestr(c.properties.deviceName, select) != NULL);
-        int score = (c.missing ? 0 : 10) + rank(&c);
+        int score = (c.missing ? 0 : 10) + kinds[kind_of(&c)].rank;
         if (wanted && score > best) {
             best = score;
             *out = c;
@@ -324,12 +322,6 @@ tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **ou
 
 // ---- listing ----------------------------------------------------------------------------------
 
-static const char *type_name(VkPhysicalDeviceType type)
-{
-    static const char *const names[] = {"other", "integrated", "discrete", "virtual", "cpu"};
-    return (unsigned)type < 5 ? names[type] : "other";
-}
-
 int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
 {
     tyn_device dev = {0};
@@ -361,7 +353,7 @@ int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
         VkPhysicalDeviceMemoryProperties memory;
         dev.vk.GetPhysicalDeviceMemoryProperties(devices[i], &memory);
         infos[i] = (tyn_device_info){.api_version = c.properties.apiVersion,
-                                     .type = type_name(c.properties.deviceType),
+                                     .type = kinds[kind_of(&c)].name,
                                      .heap_bytes = memory.memoryHeaps[0].size};
         snprintf(infos[i].name, sizeof infos[i].name, "%s", c.properties.deviceName);
         snprintf(infos[i].driver, sizeof infos[i].driver, "%s", c.driver);
