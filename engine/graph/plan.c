@@ -146,24 +146,21 @@ void tyn_print_access(char *text, size_t size, VkAccessFlags2 access)
 
 const char *tyn_layout_name(VkImageLayout layout)
 {
-    switch (layout) {
-    case VK_IMAGE_LAYOUT_UNDEFINED:
-        return "UNDEFINED";
-    case VK_IMAGE_LAYOUT_GENERAL:
-        return "GENERAL";
-    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
-        return "READ_ONLY";
-    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
-        return "TRANSFER_SRC";
-    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL:
-        return "TRANSFER_DST";
-    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
-        return "COLOR_ATTACHMENT";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL:
-        return "DEPTH_ATTACHMENT";
-    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
-        return "DEPTH_READ_ONLY";
-    default:
-        return "OTHER";
+    static const struct {
+        VkImageLayout layout;
+        const char *name;
+    } names[] = {{VK_IMAGE_LAYOUT_UNDEFINED, "UNDEFINED"},
+                 {VK_IMAGE_LAYOUT_GENERAL, "GENERAL"},
+                 {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, "READ_ONLY"},
+                 {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "TRANSFER_SRC"},
+                 {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "TRANSFER_DST"},
+                 {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, "COLOR_ATTACHMENT"},
+                 {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, "DEPTH_ATTACHMENT"},
+                 {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, "DEPTH_READ_ONLY"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (names[i].layout == layout) {
+            return names[i].name;
+        }
     }
+    return "OTHER";
 }
