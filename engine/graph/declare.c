@@ -38,7 +38,10 @@ static tyn_ref add_resource(tyn_graph *g, const resource *r)
         graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", r->name);
         return (tyn_ref){0};
     }
-    g->resources[g->num_resources++] = *r;
+    resource *added = &g->resources[g->num_resources++];
+    *added = *r;
+    added->owner = r->owner ? r->owner : "";
+    added->mips = r->mips ? r->mips : 1;
     return (tyn_ref){g->num_resources, 0};
 }
 
@@ -97,12 +100,10 @@ tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, cons
     uint64_t content = version ? tyn_hash_u64(version, (uint64_t)image->image) : ++g->unique;
     return add_resource(
         g, &(resource){.name = name,
-                       .owner = "",
                        .kind = RESOURCE_IMPORT,
                        .dim = dim,
                        .format = image->format,
                        .extent = {image->extent.width, image->extent.height, image->extent.depth},
-                       .mips = 1,
                        .content = tyn_hash_string(content, name),
                        .image = *image});
 }
@@ -128,11 +129,9 @@ tyn_ref tyn_graph_upload_buffer(tyn_graph *g, const char *name, const void *data
         hash = tyn_hash_bytes(tyn_hash_string(TYN_HASH_SEED, name), data, size);
     }
     return add_resource(g, &(resource){.name = name,
-                                       .owner = "",
                                        .kind = RESOURCE_UPLOAD,
                                        .dim = TYN_BUFFER,
                                        .extent = {(uint32_t)((size + 3) & ~(size_t)3), 1, 1},
-                                       .mips = 1,
                                        .content = hash,
                                        .key = size,
                                        .data = data});
@@ -142,12 +141,10 @@ tyn_ref tyn_graph_upload_image(tyn_graph *g, const char *name, tyn_dim dim, VkFo
                                tyn_extent extent, tyn_fill_fn fill, void *user, uint64_t hash)
 {
     return add_resource(g, &(resource){.name = name,
-                                       .owner = "",
                                        .kind = RESOURCE_UPLOAD,
                                        .dim = dim,
                                        .format = format,
                                        .extent = extent,
-                                       .mips = 1,
                                        .content = hash ? hash : 1,
                                        .fill = fill,
                                        .user = user});
@@ -157,12 +154,10 @@ tyn_ref tyn_graph_history_image(tyn_graph *g, const char *name, tyn_dim dim, VkF
                                 tyn_extent extent, uint64_t key)
 {
     return add_resource(g, &(resource){.name = name,
-                                       .owner = "",
                                        .kind = RESOURCE_HISTORY,
                                        .dim = dim,
                                        .format = format,
                                        .extent = extent,
-                                       .mips = 1,
                                        .content = tyn_hash_u64(TYN_HASH_SEED, key),
                                        .key = key});
 }
@@ -292,7 +287,7 @@ void tyn_build_image(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t m
     extent.x = extent.x ? extent.x : 1;
     extent.y = extent.y ? extent.y : 1;
     extent.z = extent.z ? extent.z : 1;
-    build(b, port, extent, mips ? mips : 1);
+    build(b, port, extent, mips);
 }
 
 void tyn_build_buffer(tyn_builder *b, uint8_t port, uint64_t bytes)
