@@ -304,29 +304,24 @@ tyn_result tyn_registry_add(const tyn_addition *a, const tyn_log *log)
     return fit ? TYN_OK : TYN_ERR_PARAMS;
 }
 
+static tyn_result add_one(const tyn_log *log, const void *given, const char *name, tyn_addition a)
+{
+    return tyn_given(log, a.who, name, &given, 1) ? tyn_registry_add(&a, log) : TYN_ERR_PARAMS;
+}
+
 tyn_result tyn_pass_register(const tyn_pass_desc *pass, const tyn_log *log)
 {
-    if (!TYN_GIVEN(log, pass)) {
-        return TYN_ERR_PARAMS;
-    }
-    return tyn_registry_add(
-        &(tyn_addition){"tyn_pass_register", "", .passes = &pass, .num_passes = 1}, log);
+    return add_one(log, pass, "pass",
+                   (tyn_addition){__func__, "", .passes = &pass, .num_passes = 1});
 }
 
 tyn_result tyn_method_register(const tyn_method *method, const tyn_log *log)
 {
-    if (!TYN_GIVEN(log, method)) {
-        return TYN_ERR_PARAMS;
-    }
-    return tyn_registry_add(
-        &(tyn_addition){"tyn_method_register", "", .methods = &method, .num_methods = 1}, log);
+    return add_one(log, method, "method",
+                   (tyn_addition){__func__, "", .methods = &method, .num_methods = 1});
 }
 
 tyn_result tyn_picture_hook_register(const tyn_picture_hook *hook, const tyn_log *log)
 {
-    if (!TYN_GIVEN(log, hook)) {
-        return TYN_ERR_PARAMS;
-    }
-    return tyn_registry_add(
-        &(tyn_addition){"tyn_picture_hook_register", "", .hooks = &hook, .num_hooks = 1}, log);
+    return add_one(log, hook, "hook", (tyn_addition){__func__, "", .hooks = &hook, .num_hooks = 1});
 }
