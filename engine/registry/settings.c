@@ -70,20 +70,15 @@ uint64_t tyn_settings_hash(const tyn_settings *settings)
 
 // ---- parsing ----------------------------------------------------------------------------------
 
+// Of the parameters of a pass; NULL: of the passes.
 static void list_names(char *text, size_t size, const tyn_pass_desc *pass)
 {
+    const uint32_t count = pass ? pass->num_params : tyn_num_passes();
     size_t at = 0;
     text[0] = 0;
-    if (pass) {
-        for (uint32_t i = 0; i < pass->num_params && at < size; i++) {
-            at +=
-                (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", pass->params[i].name);
-        }
-    } else {
-        for (uint32_t i = 0; i < tyn_num_passes() && at < size; i++) {
-            at +=
-                (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", tyn_pass_at(i)->name);
-        }
+    for (uint32_t i = 0; i < count && at < size; i++) {
+        const char *name = pass ? pass->params[i].name : tyn_pass_at(i)->name;
+        at += (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", name);
     }
 }
 
