@@ -35,19 +35,6 @@ bool tyn_gltf_data_uri(const char *uri, void **bytes, size_t *size)
     return good;
 }
 
-static tyn_result read_file(const json_doc *doc, const cJSON *uri, gltf_buffer *out)
-{
-    tyn_capture capture;
-    tyn_capture_init(&capture);
-    char *path = tyn_uri_path(doc, uri);
-    if (!path) {
-        return TYN_ERR_PARAMS;
-    }
-    tyn_result r = tyn_file_read(path, 1ull << 31, &out->owned, &out->size, &capture.log);
-    free(path);
-    return r ? tyn_capture_fault(&capture, doc, uri, r) : TYN_OK;
-}
-
 static tyn_result read_buffer(const json_doc *doc, const cJSON *buffer, const gltf_buffer *chunk,
                               gltf_buffer *out)
 {
@@ -63,7 +50,7 @@ static tyn_result read_buffer(const json_doc *doc, const cJSON *buffer, const gl
                                     chunk->size);
     }
     if (strncmp(uri->valuestring, "data:", 5) != 0) {
-        TYN_TRY(read_file(doc, uri, out));
+        TYN_TRY(tyn_uri_read(doc, uri, &out->owned, &out->size, NULL));
     } else if (!tyn_gltf_data_uri(uri->valuestring, &out->owned, &out->size)) {
         return tyn_json_fault(doc, uri, "must be base64 data");
     }

@@ -1,11 +1,9 @@
 // gltf_texture.c -- textures of a glTF file, read when a material wants them.
 #include "io/gltf_texture.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include "io/picture.h"
 #include "io/uri.h"
 
@@ -98,48 +96,23 @@ static tyn_result grey(tyn_texture *out)
 }
 
 // A file that is not there gives a grey one, and *missing.
-static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture *out,
-                            bool *missing)
-{
-    char *path = tyn_uri_path(data->doc, uri);
-    if (!path) {
-        return TYN_ERR_PARAMS;
-    }
-    void *bytes;
-    size_t size;
-    tyn_capture capture;
-    tyn_capture_init(&capture);
-    tyn_result r = tyn_file_read(path, 1ull << 31, &bytes, &size, &capture.log);
-    const bool there = access(path, F_OK) == 0 || (errno != ENOENT && errno != ENOTDIR);
-    free(path);
-    if (r == TYN_ERR_IO && !there) {
-        *missing = true;
-        return grey(out);
-    }
-    if (r) {
-        return tyn_capture_fault(&capture, data->doc, uri, r);
-    }
-    r = decode(data, uri, bytes, size, out);
-    free(bytes);
-    return r;
-}
-
 static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_texture *out,
                              bool *missing)
 {
     const cJSON *uri = tyn_json_member(image, "uri"), *view = tyn_json_member(image, "bufferView");
-    if (view) {
-        size_t size;
-        const uint8_t *bytes = tyn_gltf_view_bytes(data, (int64_t)view->valuedouble, &size);
-        return decode(data, image, bytes, size, out);
-    }
-    if (strncmp(uri->valuestring, "data:", 5) != 0) {
-        return read_file(data, uri, out, missing);
-    }
     void *bytes;
     size_t size;
-    if (!tyn_gltf_data_uri(uri->valuestring, &bytes, &size)) {
+    if (view) {
+        const uint8_t *in_view = tyn_gltf_view_bytes(data, (int64_t)view->valuedouble, &size);
+        return decode(data, image, in_view, size, out);
+    }
+    if (strncmp(uri->valuestring, "data:", 5) != 0) {
+        TYN_TRY(tyn_uri_read(data->doc, uri, &bytes, &size, missing));
+    } else if (!tyn_gltf_data_uri(uri->valuestring, &bytes, &size)) {
         return tyn_json_fault(data->doc, uri, "must be base64 data of a PNG or JPEG picture");
+    }
+    if (!bytes) {
+        return grey(out);
     }
     tyn_result r = decode(data, uri, bytes, size, out);
     free(bytes);

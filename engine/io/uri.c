@@ -1,5 +1,7 @@
 // uri.c -- resolves uris; joins what a reader says with the place that named its file.
 #include "io/uri.h"
+#include <tyndall/io.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,6 +89,25 @@ static void keep(void *user, tyn_log_level level, const char *message)
 void tyn_capture_init(tyn_capture *capture)
 {
     *capture = (tyn_capture){.log = {keep, capture, TYN_LOG_ERROR}};
+}
+
+tyn_result tyn_uri_read(const json_doc *doc, const cJSON *uri, void **bytes, size_t *size,
+                        bool *missing)
+{
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    char *path = tyn_uri_path(doc, uri);
+    if (!path) {
+        return TYN_ERR_PARAMS;
+    }
+    const tyn_result r = tyn_file_read(path, 1ull << 31, bytes, size, &capture.log);
+    const bool there = access(path, F_OK) == 0 || (errno != ENOENT && errno != ENOTDIR);
+    free(path);
+    if (missing && r == TYN_ERR_IO && !there) {
+        *missing = true;
+        return TYN_OK;
+    }
+    return r ? tyn_capture_fault(&capture, doc, uri, r) : TYN_OK;
 }
 
 tyn_result tyn_capture_fault(const tyn_capture *capture, const json_doc *doc, const cJSON *uri,

@@ -13,6 +13,10 @@ typedef struct tyn_capture {
     char message[1024];
 } tyn_capture;
 void tyn_capture_init(tyn_capture *capture);
+// The whole file that a uri means; bytes are freed with free(). If there is no such file and `missing` is not NULL: true
+// there, and bytes NULL.
+tyn_result tyn_uri_read(const json_doc *doc, const cJSON *uri, void **bytes, size_t *size,
+                        bool *missing);
 // Faults at `uri` with the kept message; returns r.
 tyn_result tyn_capture_fault(const tyn_capture *capture, const json_doc *doc, const cJSON *uri,
                              tyn_result r);
