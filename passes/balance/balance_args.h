@@ -1,6 +1,4 @@
 // balance_args.h -- push constants and buffers of the balance kernels. Included by C and GLSL.
-#ifndef TYN_BALANCE_ARGS_H
-#define TYN_BALANCE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct balance_args {
@@ -38,5 +36,3 @@ TYN_ASSERT_SIZE(balance_light, 48);
 #define BALANCE_GROUP 256
 #define BALANCE_SUN_PARTS 16 // groups that share the rays of a sun
 #define BALANCE_SKY_PARTS 64 // and of the sky
-
-#endif

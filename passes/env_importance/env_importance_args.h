@@ -1,6 +1,4 @@
 // env_importance_args.h -- push constants of env_importance. Included by C and GLSL.
-#ifndef TYN_ENV_IMPORTANCE_ARGS_H
-#define TYN_ENV_IMPORTANCE_ARGS_H
 #include "shaders/light/sky_args.h"
 
 struct env_importance_args {
@@ -8,5 +6,3 @@ struct env_importance_args {
     TYN_STRUCT(sky_sun) suns[SKY_SUNS_MAX];
 };
 TYN_ASSERT_SIZE(env_importance_args, 116);
-
-#endif

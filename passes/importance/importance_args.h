@@ -1,6 +1,4 @@
 // importance_args.h -- the camera's grid and the map of directions. Included by C and GLSL.
-#ifndef TYN_IMPORTANCE_ARGS_H
-#define TYN_IMPORTANCE_ARGS_H
 #include "shaders/common/shared.h"
 
 #define TYN_IMPORTANCE_WIDTH 32 // of the map of directions, texels
@@ -62,5 +60,3 @@ struct importance_args {
     float floor;
 };
 TYN_ASSERT_SIZE(importance_args, 16);
-
-#endif

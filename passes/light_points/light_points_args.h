@@ -1,11 +1,7 @@
 // light_points_args.h -- push constants of the kernel. Included by C and GLSL.
-#ifndef TYN_LIGHT_POINTS_ARGS_H
-#define TYN_LIGHT_POINTS_ARGS_H
 #include "shaders/common/shared.h"
 
 struct light_points_args {
     tyn_uvec3 size; // texels of the host's images
 };
 TYN_ASSERT_SIZE(light_points_args, 12);
-
-#endif

@@ -1,6 +1,4 @@
 // medium_args.h -- push constants of the medium pass. Included by C and GLSL.
-#ifndef TYN_MEDIUM_ARGS_H
-#define TYN_MEDIUM_ARGS_H
 #include "shaders/common/shared.h"
 
 struct resample_args {
@@ -16,5 +14,3 @@ struct bricks_args {
 struct distance_args {
     tyn_uint axis;
 };
-
-#endif

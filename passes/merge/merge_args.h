@@ -1,6 +1,4 @@
 // merge_args.h -- push constants of the merge kernels. Included by C and GLSL.
-#ifndef TYN_MERGE_ARGS_H
-#define TYN_MERGE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct merge_args {
@@ -11,5 +9,3 @@ struct merge_args {
     tyn_uvec3 repeat;      // medium_block.repeat
     float reach;           // of local lights, what is nearer is marched; m
 };
-
-#endif

@@ -1,6 +1,4 @@
 // ordinates_args.h -- push constants of ordinates. Included by C and GLSL.
-#ifndef TYN_ORDINATES_ARGS_H
-#define TYN_ORDINATES_ARGS_H
 #include "shaders/common/shared.h"
 
 struct ordinates_args {
@@ -23,5 +21,3 @@ struct ordinates_piece { // what comes from a region, before folding
     tyn_vec3 outwards; // integral of the direction over the region, map frame
 };
 TYN_ASSERT_SIZE(ordinates_piece, 44);
-
-#endif

@@ -1,6 +1,4 @@
 // probe_args.h -- push constants of the probe kernel. Included by C and GLSL.
-#ifndef TYN_PROBE_ARGS_H
-#define TYN_PROBE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct probe_args {
@@ -22,5 +20,3 @@ struct probe_result { // tyn_probe_result
     float flux_se[9];
 };
 TYN_ASSERT_SIZE(probe_result, 96);
-
-#endif

@@ -1,7 +1,5 @@
 // probe_local.h -- which grids of local lights a probe looks at. Included by C and GLSL.
-#ifndef TYN_PROBE_LOCAL_H
-#define TYN_PROBE_LOCAL_H
+
 #define TYN_PROBE_LOCAL_NONE 0
 #define TYN_PROBE_LOCAL_LAMPS 1
 #define TYN_PROBE_LOCAL_ALL 2 // and virtual point lights
-#endif

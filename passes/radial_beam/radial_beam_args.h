@@ -1,6 +1,4 @@
 // radial_beam_args.h -- push constants of radial_beam. Included by C and GLSL; scalar layout.
-#ifndef TYN_RADIAL_BEAM_ARGS_H
-#define TYN_RADIAL_BEAM_ARGS_H
 #include "shaders/common/shared.h"
 
 #define RADIAL_CLASSES                                                                             \
@@ -25,5 +23,3 @@ struct radial_beam_args {
 TYN_ASSERT_SIZE(radial_beam_args, 104);
 
 #define RADIAL_GROUP 8 // threads of a workgroup along each side of a map
-
-#endif

@@ -1,6 +1,4 @@
 // raymarch_args.h -- push constants and features of the ray march. Included by C and GLSL.
-#ifndef RAYMARCH_ARGS_H
-#define RAYMARCH_ARGS_H
 #include "shaders/common/shared.h"
 
 // Bits of the specialisation constant "features".
@@ -64,5 +62,3 @@ TYN_ASSERT_SIZE(raymarch_rest, 16);
 #define RAYMARCH_REST_GROUPS 16u
 // So many places may be listed.
 #define RAYMARCH_REST_MAX (64u * 65535u * RAYMARCH_REST_GROUPS)
-
-#endif

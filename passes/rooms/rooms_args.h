@@ -1,6 +1,4 @@
 // rooms_args.h -- push constants of the kernels of the pass rooms. Included by C and GLSL.
-#ifndef TYN_ROOMS_ARGS_H
-#define TYN_ROOMS_ARGS_H
 #include "shaders/common/shared.h"
 
 struct rooms_args {
@@ -9,5 +7,3 @@ struct rooms_args {
 };
 
 #define ROOMS_GROUP 64
-
-#endif

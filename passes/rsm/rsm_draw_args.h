@@ -1,6 +1,4 @@
 // rsm_draw_args.h -- push constants of a reflective shadow map.
-#ifndef TYN_RSM_DRAW_ARGS_H
-#define TYN_RSM_DRAW_ARGS_H
 #include "shaders/common/shared.h"
 
 struct rsm_draw_args {
@@ -11,5 +9,3 @@ struct rsm_draw_args {
     tyn_uint light;   // in the buffer "suns" (SUN) or "lights"
 };
 TYN_ASSERT_SIZE(rsm_draw_args, 88);
-
-#endif

@@ -3,8 +3,6 @@
 // A triangle counts by its area times how near it is to a box (rsm_sky_places.glsl). Triangles are in blocks of
 // RSM_SKY_BLOCK; "areas" has what a triangle and those before it in its block count for, "area_blocks" what all blocks before
 // one do, and as one more element the whole.
-#ifndef TYN_RSM_SKY_ARGS_H
-#define TYN_RSM_SKY_ARGS_H
 #include "shaders/common/shared.h"
 
 #define RSM_SKY_BLOCK 256
@@ -19,5 +17,3 @@ struct rsm_sky_args {
     tyn_vec3 near_lo, near_hi; // M: most places are near this box
 };
 TYN_ASSERT_SIZE(rsm_sky_args, 68);
-
-#endif

@@ -1,6 +1,4 @@
 // shade_args.h -- features and push constants of the surfaces' shading. Included by C and GLSL.
-#ifndef SHADE_ARGS_H
-#define SHADE_ARGS_H
 #include "shaders/common/shared.h"
 
 // Bits of the specialisation constant "features".
@@ -53,5 +51,3 @@ struct shade_args {
     tyn_uvec3 sky_cells; // that have columns along them
 };
 TYN_ASSERT_SIZE(shade_args, 52);
-
-#endif

@@ -4,8 +4,6 @@
 // then 2 x 2 of them, SHADE_FACE_ENTRIES texels each. Below are tiles of the light of 4 x 4 patches, face beside face,
 // to interpolate in. A patch shines as what of it is lit: the rectangle around those of its cells that have light and
 // no wall outwards.
-#ifndef SHADE_FACES_H
-#define SHADE_FACES_H
 
 #define SHADE_FACE_SIDE 4 // patches along each side of a face, at most
 #define SHADE_FACE_PATCHES (1 + 4 + 16)
@@ -27,5 +25,3 @@
 // none of the box, as within solids, which are left out where others are near.
 #define SHADE_SIGHT_SHARE 6
 #define SHADE_SIGHT_FIELDS 7
-
-#endif

@@ -1,6 +1,4 @@
 // sky_seen_args.h -- push constants of sky_seen. Included by C and GLSL.
-#ifndef TYN_SKY_SEEN_ARGS_H
-#define TYN_SKY_SEEN_ARGS_H
 #include "shaders/common/shared.h"
 
 struct sky_seen_args {
@@ -10,5 +8,3 @@ struct sky_seen_args {
     tyn_uint fan;    // directions of each
 };
 TYN_ASSERT_SIZE(sky_seen_args, 32);
-
-#endif

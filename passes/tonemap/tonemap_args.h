@@ -1,6 +1,4 @@
 // tonemap_args.h -- push constants of tonemap. Included by C and GLSL.
-#ifndef TONEMAP_ARGS_H
-#define TONEMAP_ARGS_H
 #include "shaders/common/shared.h"
 
 struct tonemap_args {
@@ -10,5 +8,3 @@ struct tonemap_args {
     tyn_uint opaque;
 };
 TYN_ASSERT_SIZE(tonemap_args, 16);
-
-#endif

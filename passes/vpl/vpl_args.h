@@ -2,8 +2,6 @@
 //
 // Everything that may become a VPL is an element: a texel of a reflective shadow map, or one side of a
 // triangle. Elements are in blocks of VPL_BLOCK; a map's run along its Hilbert curve.
-#ifndef VPL_ARGS_H
-#define VPL_ARGS_H
 #include "shaders/common/shared.h"
 #include "shaders/light/rsm_args.h"
 
@@ -45,5 +43,3 @@ struct vpl_args {
     tyn_vec3 near_lo, near_hi; // M: VPLs are close together near this box
 };
 TYN_ASSERT_SIZE(vpl_args, 40);
-
-#endif

@@ -2,8 +2,6 @@
 //
 // A bin is a cell of a grid in the box around all surfaces and a main direction of their normals. Sums are
 // whole numbers, so that their order does not matter.
-#ifndef TYN_VPL_BOUNCE_ARGS_H
-#define TYN_VPL_BOUNCE_ARGS_H
 #include "shaders/common/shared.h"
 
 #define VPL_BIN_CELLS 8           // of the grid along each side
@@ -36,5 +34,3 @@ struct vpl_distances_args {
     tyn_uint media;
 };
 TYN_ASSERT_SIZE(vpl_distances_args, 16);
-
-#endif

@@ -1,6 +1,4 @@
 // wall_light_args.h -- push constants and buffers of the kernels of the pass wall_light. Included by C and GLSL.
-#ifndef TYN_WALL_LIGHT_ARGS_H
-#define TYN_WALL_LIGHT_ARGS_H
 #include "shaders/walls/wall_light_power.h"
 
 struct wall_light_args {
@@ -26,5 +24,3 @@ TYN_ASSERT_SIZE(wall_light_list, 16);
 #define WALL_LIGHT_PARTS 64      // of the lattice, at most; of a workgroup each
 
 #define WALL_LIGHT_DARK 0xffffffffu // element of the buffer "first": no VPL shines there
-
-#endif

@@ -1,6 +1,4 @@
 // walls_pass_args.h -- push constants of the kernels of the pass walls. Included by C and GLSL.
-#ifndef TYN_WALLS_PASS_ARGS_H
-#define TYN_WALLS_PASS_ARGS_H
 #include "shaders/common/shared.h"
 
 struct walls_pass_args {
@@ -16,5 +14,3 @@ struct walls_pass_args {
 #define WALLS_SLICES 16 // and are looked at by so many workgroups
 #define WALLS_SLOTS 6   // walls in a cell, one for each main direction of the normal
 #define WALLS_ROW 32768 // workgroups along x
-
-#endif

@@ -1,6 +1,4 @@
 // walls_beyond_args.h -- push constants of walls_beyond. Included by C and GLSL; scalar layout.
-#ifndef TYN_WALLS_BEYOND_ARGS_H
-#define TYN_WALLS_BEYOND_ARGS_H
 #include "shaders/common/shared.h"
 
 struct walls_beyond_args {
@@ -10,5 +8,3 @@ struct walls_beyond_args {
     tyn_uint shining;
 };
 TYN_ASSERT_SIZE(walls_beyond_args, 32);
-
-#endif

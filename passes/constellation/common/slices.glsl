@@ -5,8 +5,6 @@
 // counted from iNear = 0, so that half floats hold their numbers however far away the camera is. Each stands for the
 // part of the ray halfway to its neighbours, the first and the last one for all up to where the ray enters and leaves;
 // a ray that is in the box for less than D and meets no slice has one in the middle.
-#ifndef TYN_SLICES_GLSL
-#define TYN_SLICES_GLSL
 #include "slices_args.h"
 
 struct slices {
@@ -51,5 +49,3 @@ int slices_skipped(slices_args a, float away)
 {
     return int(max((away - a.margin) / a.distance, 0.0));
 }
-
-#endif

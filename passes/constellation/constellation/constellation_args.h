@@ -1,6 +1,4 @@
 // constellation_args.h -- push constants, features and lists of the method constellation. Included by C and GLSL.
-#ifndef TYN_CONSTELLATION_PASS_ARGS_H
-#define TYN_CONSTELLATION_PASS_ARGS_H
 #include "shaders/common/shared.h"
 #include "../common/slices_args.h"
 
@@ -35,5 +33,3 @@ struct constellation_args {
     tyn_uint light_begin, light_end;
 };
 TYN_ASSERT_SIZE(constellation_args, 48);
-
-#endif

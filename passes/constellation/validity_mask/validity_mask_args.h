@@ -1,11 +1,7 @@
 // validity_mask_args.h -- push constants of validity_mask. Included by C and GLSL.
-#ifndef TYN_VALIDITY_MASK_ARGS_H
-#define TYN_VALIDITY_MASK_ARGS_H
 #include "../common/slices_args.h"
 
 struct validity_mask_args {
     TYN_STRUCT(slices_args) slices;
 };
 TYN_ASSERT_SIZE(validity_mask_args, 8);
-
-#endif

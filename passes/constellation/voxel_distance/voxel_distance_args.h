@@ -1,6 +1,4 @@
 // voxel_distance_args.h -- push constants of voxel_distance. Included by C and GLSL.
-#ifndef TYN_VOXEL_DISTANCE_ARGS_H
-#define TYN_VOXEL_DISTANCE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct voxel_distance_args {
@@ -15,5 +13,3 @@ TYN_ASSERT_SIZE(voxel_distance_args, 32);
 #define VOXEL_DISTANCE_NONE 1e30f
 // What the result is in a medium that is empty everywhere, m: above all that are distances, and half floats hold it.
 #define VOXEL_DISTANCE_EMPTY 65504.0f
-
-#endif

@@ -1,6 +1,4 @@
 // gradient_args.h -- push constants, lists and samples of the method gradient. Included by C and GLSL; scalar layout.
-#ifndef TYN_GRADIENT_ARGS_H
-#define TYN_GRADIENT_ARGS_H
 #include "shaders/common/shared.h"
 
 #define GRADIENT_MAX_CELLS 64 // of the finest grid, along the longest side
@@ -80,5 +78,3 @@ TYN_ASSERT_SIZE(gradient_sample, 64);
 // States of points of the grids: bits of "states".
 #define GRADIENT_IS_LISTED 1u
 #define GRADIENT_IS_SAMPLE 2u // and was not split
-
-#endif

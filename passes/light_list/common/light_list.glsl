@@ -1,8 +1,6 @@
 // light_list.glsl -- reads the list of all lights (light_list_args.h).
 //
 // Declare it before, as `layout(binding = ...) uniform usamplerBuffer light_list_texels`.
-#ifndef TYN_LIGHT_LIST_GLSL
-#define TYN_LIGHT_LIST_GLSL
 #include "light_list_args.h"
 
 struct listed_light {
@@ -43,5 +41,3 @@ float listed_light_lobe(listed_light l, vec3 along)
     lobe.cos_outer = l.cos_outer;
     return light_lobe(lobe, dot(along, l.direction));
 }
-
-#endif

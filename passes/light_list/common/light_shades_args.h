@@ -4,8 +4,6 @@
 // A distant light in the environment's place is as wide as its region of the map: scattered from many directions and hidden bit by
 // bit. Each direction counts for the light that is nearest to it, by its power. A sun without a shadow map of its own has one
 // direction.
-#ifndef TYN_LIGHT_SHADES_ARGS_H
-#define TYN_LIGHT_SHADES_ARGS_H
 #include "light_list_args.h"
 #include "shaders/light/ordinate_args.h"
 
@@ -33,5 +31,3 @@ struct light_shades_block { // storage buffer "light_shades", read as words of f
     TYN_STRUCT(light_shade) shades[TYN_LIGHT_SHADES_MAX];
 };
 TYN_ASSERT_SIZE(light_shades_block, 16 * TYN_LIGHT_LIST_MAX + 32 * TYN_LIGHT_SHADES_MAX);
-
-#endif

@@ -1,6 +1,4 @@
 // light_list_args.h -- push constants of the list of lights. Included by C and GLSL.
-#ifndef TYN_LIGHT_LIST_PASS_ARGS_H
-#define TYN_LIGHT_LIST_PASS_ARGS_H
 #include "../common/light_list_args.h"
 #include "shaders/light/shadow_args.h"
 
@@ -17,5 +15,3 @@ struct light_list_args {
         wide; // 1: lights of the constellation are as wide as their regions (mean cosines), else points
 };
 TYN_ASSERT_SIZE(light_list_args, 44);
-
-#endif

@@ -1,6 +1,4 @@
 // median_cut_args.h -- the light constellation of an environment. Included by C and GLSL; scalar layout.
-#ifndef TYN_MEDIAN_CUT_ARGS_H
-#define TYN_MEDIAN_CUT_ARGS_H
 #include "../common/constellation_args.h"
 
 struct median_cut_args {
@@ -8,5 +6,3 @@ struct median_cut_args {
     tyn_uint map;    // 1: of the map's sums; 0: of a radiance that is 1 in all directions
 };
 TYN_ASSERT_SIZE(median_cut_args, 8);
-
-#endif

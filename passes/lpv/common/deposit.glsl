@@ -4,8 +4,6 @@
 // four follow each other from `at` on. What is added is in units of a bound of the sum of all, over DEPOSIT_WHOLE: so sums
 // cannot overflow, roundings of a billion deposits included. It is rounded up or down at random, so that deposits far below a
 // unit are right on average; `dither`, in [0, 1), has to belong to the deposit, whichever thread makes it.
-#ifndef TYN_DEPOSIT_GLSL
-#define TYN_DEPOSIT_GLSL
 
 const float DEPOSIT_WHOLE = 1073741824.0; // 2^30
 
@@ -19,5 +17,3 @@ const float DEPOSIT_WHOLE = 1073741824.0; // 2^30
     } \
 }
 // clang-format on
-
-#endif

@@ -1,8 +1,6 @@
 // lamp_depth.glsl -- what the medium leaves of the light of a sun or lamp, by its index among the shadow maps.
 //
 // Include after beam.glsl, radial.glsl with RADIALS_TEXELS, and shadow_args.h, in workgroups of 64 threads or more.
-#ifndef TYN_LAMP_DEPTH_GLSL
-#define TYN_LAMP_DEPTH_GLSL
 
 shared uint lamp_depth_grid;
 
@@ -31,5 +29,3 @@ vec3 lamp_transmittance(uint light, uint grid, vec3 p)
     }
     return exp(-(tau.a + tau.p));
 }
-
-#endif

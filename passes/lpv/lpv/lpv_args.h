@@ -6,8 +6,6 @@
 // its share of the sphere and m_j its mean direction, and deposits T_j / <T_j|1>, which is (1, m_j) for a watt. The
 // gamma_j sum to 1, so that no power is lost. By symmetry m_j lies along the link, and three pairs of numbers are all: those of
 // neighbours across faces, corners and edges. passes/lpv/tests/gpu/lpv.c integrates them anew.
-#ifndef TYN_LPV_ARGS_H
-#define TYN_LPV_ARGS_H
 #include "shaders/common/shared.h"
 
 #define LPV_LINKS 26 // numbered as walls_step does
@@ -36,5 +34,3 @@ struct lpv_args {
     float own; // start: share of light scattered or emitted in a cell that counts there at once
 };
 TYN_ASSERT_SIZE(lpv_args, 36);
-
-#endif

@@ -1,6 +1,4 @@
 // lpv_blockers_args.h -- push constants of lpv_blockers. Included by C and GLSL.
-#ifndef TYN_LPV_BLOCKERS_ARGS_H
-#define TYN_LPV_BLOCKERS_ARGS_H
 #include "shaders/common/shared.h"
 
 #define LPV_BLOCKERS_UNIT                                                                          \
@@ -13,5 +11,3 @@ struct lpv_blockers_args {
     tyn_vec3 area;   // of a texel of the maps along each axis, m^2
 };
 TYN_ASSERT_SIZE(lpv_blockers_args, 40);
-
-#endif

@@ -1,6 +1,4 @@
 // lpv_reflect_args.h -- push constants of the kernels of lpv_reflect. Included by C and GLSL.
-#ifndef TYN_LPV_REFLECT_ARGS_H
-#define TYN_LPV_REFLECT_ARGS_H
 #include "shaders/common/shared.h"
 
 #define LPV_REFLECT_BLOCK                                                                          \
@@ -16,5 +14,3 @@ struct lpv_reflect_args {
     tyn_uint first; // deposit: tile of the first layer of threads
 };
 TYN_ASSERT_SIZE(lpv_reflect_args, 36);
-
-#endif

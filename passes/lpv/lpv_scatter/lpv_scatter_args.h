@@ -1,6 +1,4 @@
 // lpv_scatter_args.h -- rays from lights, and push constants of lpv_scatter. Included by C and GLSL.
-#ifndef TYN_LPV_SCATTER_ARGS_H
-#define TYN_LPV_SCATTER_ARGS_H
 #include "shaders/common/shared.h"
 #include "shaders/light/light_args.h"
 #include "shaders/light/shadow_args.h"
@@ -36,5 +34,3 @@ struct lpv_scatter_args {
     float majorant; // of what scatters, 1/m
 };
 TYN_ASSERT_SIZE(lpv_scatter_args, 44);
-
-#endif

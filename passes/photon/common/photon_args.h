@@ -3,8 +3,6 @@
 // Sums are whole numbers, in units of power times length, so that they are the same in whatever order photons come, and what
 // an old generation brought can be taken out again without a rest. A photon that a track examines at x stands for the stretch
 // 1 / sigma_T of its flight: power / sigma_T, over the volume of the cell, is fluence.
-#ifndef TYN_PHOTON_ARGS_H
-#define TYN_PHOTON_ARGS_H
 #include "shaders/common/shared.h"
 
 // Light is kept apart by where it came from, in `lobes` of a cell: the strongest suns, regions of the map, all other. A lobe has
@@ -44,5 +42,3 @@ struct photon_light {
     float count;      // deposits
 };
 TYN_ASSERT_SIZE(photon_light, 32);
-
-#endif

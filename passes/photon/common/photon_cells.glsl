@@ -1,6 +1,4 @@
 // photon_cells.glsl -- the medium in a cell of the cache. Included where `cells` is that of lattice_cells.
-#ifndef TYN_PHOTON_CELLS_GLSL
-#define TYN_PHOTON_CELLS_GLSL
 #include "shaders/phase/phase.glsl"
 
 float mean3(vec3 v)
@@ -18,5 +16,3 @@ float photon_extinction(ivec3 c, uint slices, uint channels, bool scaled)
     }
     return sum / float(channels);
 }
-
-#endif

@@ -1,11 +1,7 @@
 // impostor_args.h -- push constants of the impostor. Included by C and GLSL.
-#ifndef TYN_IMPOSTOR_ARGS_H
-#define TYN_IMPOSTOR_ARGS_H
 #include "shaders/common/shared.h"
 
 struct impostor_args {
     tyn_uint background; // 1: the environment is seen behind
 };
 TYN_ASSERT_SIZE(impostor_args, 4);
-
-#endif

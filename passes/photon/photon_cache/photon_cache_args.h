@@ -1,6 +1,4 @@
 // photon_cache_args.h -- push constants of the sum of all generations. Included by C and GLSL.
-#ifndef TYN_PHOTON_CACHE_ARGS_H
-#define TYN_PHOTON_CACHE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct photon_cache_args {
@@ -14,5 +12,3 @@ struct photon_cache_args {
     tyn_uint cell_channels; // of the medium's cells
 };
 TYN_ASSERT_SIZE(photon_cache_args, 56);
-
-#endif

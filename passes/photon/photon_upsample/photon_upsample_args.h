@@ -1,6 +1,4 @@
 // photon_upsample_args.h -- push constants of the cache's upsampling. Included by C and GLSL.
-#ifndef TYN_PHOTON_UPSAMPLE_ARGS_H
-#define TYN_PHOTON_UPSAMPLE_ARGS_H
 #include "shaders/common/shared.h"
 
 #define PHOTON_FILTER_TRILINEAR 0
@@ -22,5 +20,3 @@ struct photon_upsample_args {
         weighted; // 1: light is the mean over the medium, and there is none where there is none of it
 };
 TYN_ASSERT_SIZE(photon_upsample_args, 52);
-
-#endif

@@ -1,6 +1,4 @@
 // photon_view_args.h -- push constants of what the cache sends to the eye. Included by C and GLSL.
-#ifndef TYN_PHOTON_VIEW_ARGS_H
-#define TYN_PHOTON_VIEW_ARGS_H
 #include "shaders/common/shared.h"
 
 // How a lobe's light is distributed: from all sides alike, about the strongest sun, about its net flux in each cell.
@@ -18,5 +16,3 @@ struct photon_view_args {
     tyn_uint scaled; // 1: forward scattering counts as none
 };
 TYN_ASSERT_SIZE(photon_view_args, 44);
-
-#endif

@@ -4,8 +4,6 @@
 // power P of its light, in units of the light's intensity (sr), and its spread 1 - a about that direction.
 // Power needs no factor on its way to cells of another size: P / (Omega r^2) is the radiance's share that falls
 // as the area grows. No bindings.
-#ifndef TYN_PROPAGATE_RADIAL_GLSL
-#define TYN_PROPAGATE_RADIAL_GLSL
 #include "propagate.glsl"
 #include "propagate_radial_grid.h"
 #include "shaders/common/octahedral.glsl"
@@ -59,5 +57,3 @@ vec4 propagate_radial_outgoing(propagate_cell cell, bool ball, float light, floa
     return ball ? vec4(light * propagate_kept(cell), 0.0, 0.0, propagate_more_spread(cell, spread, rate))
                 : propagate_outgoing(cell, light, spread, rate);
 }
-
-#endif

@@ -5,8 +5,6 @@
 // r < inner; layer k > 0 is the shell inner growth^(k - 1) <= r < inner growth^k. In buffers the cells of a
 // stack (grid n, channel c: n channels + c) are numbered by map column, map row, layer; in the image `seen`
 // each stack is a tile with one more texel around the map, of what lies beyond its folded edges.
-#ifndef TYN_PROPAGATE_RADIAL_GRID_H
-#define TYN_PROPAGATE_RADIAL_GRID_H
 #include "shaders/beams/radial_args.h"
 
 // What becomes of light from shell to shell. Sideways, light is exchanged at the rate of the smaller cell but
@@ -40,5 +38,3 @@ struct propagate_radial_place {
     tyn_uint layers;
 };
 TYN_ASSERT_SIZE(propagate_radial_place, 72);
-
-#endif

@@ -1,6 +1,4 @@
 // merge_grids_args.h -- arguments of the kernel. Included by C and GLSL.
-#ifndef TYN_MERGE_GRIDS_ARGS_H
-#define TYN_MERGE_GRIDS_ARGS_H
 #include "shaders/common/shared.h"
 
 struct merge_grids_radial { // grids of one node of propagate_radial
@@ -20,5 +18,3 @@ struct merge_grids_args {
     TYN_STRUCT(merge_grids_radial) vpls;
 };
 TYN_ASSERT_SIZE(merge_grids_args, 56);
-
-#endif

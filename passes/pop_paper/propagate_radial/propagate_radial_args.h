@@ -1,6 +1,4 @@
 // propagate_radial_args.h -- arguments of all kernels. Included by C and GLSL.
-#ifndef TYN_PROPAGATE_RADIAL_ARGS_H
-#define TYN_PROPAGATE_RADIAL_ARGS_H
 #include "shaders/common/shared.h"
 
 // Edge of the workgroups of kernels with one thread a cell.
@@ -30,5 +28,3 @@ struct propagate_radial_args {
     tyn_uint tiles; // a row, in images
 };
 TYN_ASSERT_SIZE(propagate_radial_args, 64);
-
-#endif

@@ -1,6 +1,4 @@
 // propagate_rect_args.h -- arguments of all kernels. Included by C and GLSL.
-#ifndef TYN_PROPAGATE_RECT_ARGS_H
-#define TYN_PROPAGATE_RECT_ARGS_H
 #include "shaders/common/shared.h"
 
 // Edge of the workgroups of kernels with one thread a cell.
@@ -46,5 +44,3 @@ struct propagate_rect_args {
     float threshold;     // of the largest irradiance: below, iterations end
 };
 TYN_ASSERT_SIZE(propagate_rect_args, 76);
-
-#endif

@@ -1,6 +1,4 @@
 // residuum_args.h -- arguments of all kernels. Included by C and GLSL.
-#ifndef TYN_RESIDUUM_ARGS_H
-#define TYN_RESIDUUM_ARGS_H
 #include "shaders/common/shared.h"
 
 struct residuum_args {
@@ -12,5 +10,3 @@ struct residuum_args {
     tyn_uint tiles; // a row of `light`
 };
 TYN_ASSERT_SIZE(residuum_args, 32);
-
-#endif

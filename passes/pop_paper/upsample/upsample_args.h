@@ -1,6 +1,4 @@
 // upsample_args.h -- arguments of the kernel. Included by C and GLSL.
-#ifndef TYN_UPSAMPLE_ARGS_H
-#define TYN_UPSAMPLE_ARGS_H
 #include "shaders/common/shared.h"
 
 struct upsample_args {
@@ -8,5 +6,3 @@ struct upsample_args {
     float range;
 };
 TYN_ASSERT_SIZE(upsample_args, 16);
-
-#endif

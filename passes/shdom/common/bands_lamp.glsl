@@ -1,6 +1,4 @@
 // bands_lamp.glsl -- a lamp as a cell of the lattice sees it. Include after radial.glsl, lattice.glsl and delta_bands.glsl.
-#ifndef TYN_BANDS_LAMP_GLSL
-#define TYN_BANDS_LAMP_GLSL
 
 struct bands_lamp {
     vec3 direction;    // of its light
@@ -20,5 +18,3 @@ bands_lamp bands_lamp_at(uint n, lattice_box box, ivec3 cell)
     lamp.tau = radial_tau(radial_place_of(n, away, r));
     return lamp;
 }
-
-#endif

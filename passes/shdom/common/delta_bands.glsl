@@ -3,8 +3,6 @@
 //
 // The cells of the lattice are scaled with f = g^2 (sources.h); of a Henyey-Greenstein lobe both follow from g. What is left has
 // the Legendre moments (g^l - f) / (1 - f), none of the first that is left out (Wiscombe 1977).
-#ifndef TYN_DELTA_BANDS_GLSL
-#define TYN_DELTA_BANDS_GLSL
 #include "shaders/phase/phase.glsl"
 
 struct bands_medium {
@@ -54,6 +52,4 @@ float bands_transmittance(beam_tau tau, int ch, bands_medium m, uint bands, floa
     float depth = max(tau.a[ch] + scaled * tau.s[ch], own);
     return mean_transmittance(depth, own);
 }
-#endif
-
 #endif

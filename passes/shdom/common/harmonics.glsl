@@ -2,8 +2,6 @@
 //
 // Orthonormal; number l^2 + l + m, cosines at m > 0, sines at m < 0; Y_1 = sqrt(3 / (4 pi)) (y, z, x). Define HARMONICS_VISIT(l, k, y)
 // before including: it is given each with its band l and its number k.
-#ifndef TYN_HARMONICS_GLSL
-#define TYN_HARMONICS_GLSL
 
 void harmonics_visit(vec3 d, int bands)
 {
@@ -30,5 +28,3 @@ void harmonics_visit(vec3 d, int bands)
         }
     }
 }
-
-#endif

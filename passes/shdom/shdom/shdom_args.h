@@ -2,8 +2,6 @@
 //
 // Coefficients of real spherical harmonics are numbered l^2 + l + m. Tables and buffers of them have room for whole groups
 // of SHDOM_GROUP, as a thread does that many.
-#ifndef TYN_SHDOM_ARGS_H
-#define TYN_SHDOM_ARGS_H
 #include "shaders/common/shared.h"
 
 #define SHDOM_MAX_BANDS 10
@@ -27,5 +25,3 @@ struct shdom_args {
     tyn_uint lamps;
 };
 TYN_ASSERT_SIZE(shdom_args, 68);
-
-#endif

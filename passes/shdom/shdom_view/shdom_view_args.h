@@ -1,6 +1,4 @@
 // shdom_view_args.h -- push constants of the kernels of shdom_view. Included by C and GLSL.
-#ifndef TYN_SHDOM_VIEW_ARGS_H
-#define TYN_SHDOM_VIEW_ARGS_H
 #include "shaders/common/shared.h"
 
 struct shdom_view_args {
@@ -13,5 +11,3 @@ struct shdom_view_args {
     tyn_uint lamps;
 };
 TYN_ASSERT_SIZE(shdom_view_args, 40);
-
-#endif
