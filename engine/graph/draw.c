@@ -42,17 +42,6 @@ static tyn_extent check_attachments(tyn_recorder *r, const tyn_kernel *k)
     return size;
 }
 
-static void survey_attachments(tyn_recorder *r, const tyn_kernel *k)
-{
-    const node *n = &r->g->nodes[r->node];
-    for (uint32_t i = 0; r->usage && i < k->raster->num_attachments; i++) {
-        const tyn_binding *a = &k->raster->attachments[i];
-        r->usage[n->res[a->port] - 1].image_usage |=
-            a->use == TYN_USE_DEPTH ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
-                                    : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    }
-}
-
 static bool keeps(const tyn_draw *d, tyn_use use)
 {
     return d->keep || (d->keep_depth && use == TYN_USE_DEPTH);
@@ -128,10 +117,13 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
     launch l = launch_begin(r, d->kernel, d->ports, NULL, d->spec);
     for (uint32_t i = 0; i < k->raster->num_attachments; i++) {
         const tyn_binding *a = &k->raster->attachments[i];
-        launch_touch(&l, n->res[a->port] - 1, attachment_access(a->use, keeps(d, a->use)));
-    }
-    if (r->mode == RECORD_SURVEY) {
-        survey_attachments(r, k);
+        const uint32_t index = n->res[a->port] - 1;
+        launch_touch(&l, index, attachment_access(a->use, keeps(d, a->use)));
+        if (r->mode == RECORD_SURVEY && r->usage) {
+            r->usage[index].image_usage |= a->use == TYN_USE_DEPTH
+                                               ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                               : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        }
     }
     if (!launch_prepare(r, &l)) {
         return;
