@@ -272,11 +272,15 @@ static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)
     }
 }
 
-// What was in the place of a node's scratch is gone; a frame that sets up only does not make it again.
-static void forget_overwritten(tyn_graph *g, const node *n)
+// Scratch starts undefined: its layout is forgotten, its dependencies stay. What was in its place is gone; a frame that sets
+// up only does not make it again.
+static void start_scratch(tyn_graph *g, const node *n)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
         const uint32_t id = graph_port(n, p, 1 << TYN_SCRATCH);
+        if (id) {
+            g->phys[id - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        }
         for (uint32_t i = 0; id && i < g->num_resources; i++) {
             if (g->resources[i].kind == RESOURCE_OUT &&
                 graph_overlap(&g->phys[id - 1], &g->phys[i])) {
@@ -311,14 +315,7 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
             cmd, &(VkDebugUtilsLabelEXT){.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                          .pLabelName = n->pass->name});
     }
-    // Scratch starts undefined: forget its layout, keep its dependencies.
-    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-        const uint32_t id = graph_port(n, p, 1 << TYN_SCRATCH);
-        if (id) {
-            g->phys[id - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-        }
-    }
-    forget_overwritten(g, n);
+    start_scratch(g, n);
     timestamp(g, cmd, index * 2);
     tyn_recorder r = {.g = g, .node = index, .mode = RECORD_LIVE, .cmd = cmd};
     recorder_enter(&r);
