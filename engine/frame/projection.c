@@ -9,15 +9,6 @@
 // Smaller than this, against what it is made of, is what rounding of floats leaves of 0.
 static const double TINY = 1e-6, ASKEW = 1e-4;
 
-static bool finite_floats(const float *m, int count)
-{
-    bool finite = true;
-    for (int i = 0; i < count; i++) {
-        finite = finite && isfinite(m[i]);
-    }
-    return finite;
-}
-
 // Where a . p = -a[3] for each of three rows; false: nowhere or not in one point.
 static bool meet(const double a[4], const double b[4], const double c[4], double p[3])
 {
@@ -148,7 +139,7 @@ static tyn_result from_matrices(tyn_frame_projection *out, const tyn_frame *fram
                                 const tyn_log *log)
 {
     const float *v = frame->world_to_view;
-    if (!finite_floats(v, 16) || !finite_floats(frame->view_to_clip, 16)) {
+    if (!vec_finite(v, 16) || !vec_finite(frame->view_to_clip, 16)) {
         FAULT("world_to_view and view_to_clip must be finite");
     }
     if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1) {
@@ -212,14 +203,14 @@ tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame 
               view->width, view->height, view->corner[0], view->corner[1], view->whole[0],
               view->whole[1]);
     }
-    if (!finite_floats(frame->jitter, 2)) {
+    if (!vec_finite(frame->jitter, 2)) {
         FAULT("jitter is %g, %g; it must be finite, pixels", frame->jitter[0], frame->jitter[1]);
     }
     out->shift[0] += 2 * (double)frame->jitter[0] / (part ? view->whole[0] : view->width);
     out->shift[1] -= 2 * (double)frame->jitter[1] / (part ? view->whole[1] : view->height);
     const float *d = out->depth;
     // z can be told from depth if that is no constant.
-    if (frame->depth && (!finite_floats(frame->view_to_clip, 16) || d[0] * d[3] == d[1] * d[2])) {
+    if (frame->depth && (!vec_finite(frame->view_to_clip, 16) || d[0] * d[3] == d[1] * d[2])) {
         FAULT("view_to_clip: its third and fourth row must tell view z from depth (they are %g %g "
               "and %g %g in z and 1)",
               frame->view_to_clip[10], frame->view_to_clip[14], frame->view_to_clip[11],

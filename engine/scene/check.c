@@ -8,11 +8,6 @@
 #include "scene/phase.h"
 #include "scene/surfaces.h"
 
-static bool finite3(const float v[3])
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
 static bool unit3(const float v[3])
 {
     float length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -27,7 +22,7 @@ static float dot3(const float a[3], const float b[3])
 // Every component >= 0 and finite.
 static bool amount3(const float v[3])
 {
-    return finite3(v) && v[0] >= 0.0f && v[1] >= 0.0f && v[2] >= 0.0f;
+    return vec_finite(v, 3) && v[0] >= 0.0f && v[1] >= 0.0f && v[2] >= 0.0f;
 }
 
 static tyn_result check_volume(const tyn_volume *volume, uint32_t i, const tyn_log *log)
@@ -187,7 +182,7 @@ static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log
         FAULT("lights[%u].color = %g, %g, %g: must be >= 0 and finite", i, l->color[0], l->color[1],
               l->color[2]);
     }
-    if (traits->has_position && !finite3(l->position)) {
+    if (traits->has_position && !vec_finite(l->position, 3)) {
         FAULT("lights[%u].position = %g, %g, %g: must be finite", i, l->position[0], l->position[1],
               l->position[2]);
     }
@@ -204,7 +199,7 @@ tyn_result tyn_camera_check(const tyn_camera *c, uint32_t i, const tyn_log *log)
         FAULT("cameras[%u].projection = %d: must be perspective or orthographic", i,
               (int)c->projection);
     }
-    if (!finite3(c->position)) {
+    if (!vec_finite(c->position, 3)) {
         FAULT("cameras[%u].position = %g, %g, %g: must be finite", i, c->position[0],
               c->position[1], c->position[2]);
     }

@@ -46,6 +46,15 @@ static inline bool mat_invertible(const double m[16])
     return det > 1e-30 && det > 1e-6 * lengths && det < 1e30;
 }
 
+static inline bool vec_finite(const float *v, int count)
+{
+    bool finite = true;
+    for (int i = 0; i < count; i++) {
+        finite = finite && isfinite(v[i]);
+    }
+    return finite;
+}
+
 static inline double vec_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -1,6 +1,7 @@
 // surfaces.c -- life of a scene's surfaces, their bounds, hash and checks.
 #include "scene/surfaces.h"
 #include "base/fault.h"
+#include "scene/matrix.h"
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
@@ -63,11 +64,6 @@ bool tyn_surfaces_emit(const tyn_surfaces *s)
 
 // ---- checks -----------------------------------------------------------------------------------
 
-static bool finite3(const float v[3])
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
 tyn_result tyn_surfaces_check_arrays(const tyn_surfaces *s, const tyn_log *log)
 {
     const struct {
@@ -92,7 +88,8 @@ static tyn_result check_vertices(const tyn_surfaces *s, const tyn_log *log)
     for (uint32_t i = 0; i < s->num_vertices; i++) {
         const tyn_surface_vertex *v = &s->vertices[i];
         const float *p = v->position, *n = v->normal;
-        if (!finite3(p) || fabsf(p[0]) > 1e15f || fabsf(p[1]) > 1e15f || fabsf(p[2]) > 1e15f) {
+        if (!vec_finite(p, 3) || fabsf(p[0]) > 1e15f || fabsf(p[1]) > 1e15f ||
+            fabsf(p[2]) > 1e15f) {
             FAULT("surfaces.vertices[%u].position = %g, %g, %g: must be finite, metres", i, p[0],
                   p[1], p[2]);
         }
@@ -188,7 +185,7 @@ static tyn_result check_nodes(const tyn_surfaces *s, const tyn_log *log)
     for (uint32_t i = 0; !r && i < s->num_nodes; i++) {
         const tyn_surface_node *n = &s->nodes[i];
         const char *fault = NULL;
-        if (!finite3(n->lo) || !finite3(n->hi)) {
+        if (!vec_finite(n->lo, 3) || !vec_finite(n->hi, 3)) {
             fault = "its box must be finite";
         } else if (n->count) {
             bool inside = n->first < s->num_triangles && n->count <= s->num_triangles - n->first;
