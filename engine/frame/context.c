@@ -4,7 +4,6 @@
 #include "registry/registry.h"
 #include <tyndall/extend/hash.h>
 #include "base/given.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

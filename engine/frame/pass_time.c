@@ -5,7 +5,6 @@
 #include "frame/submission.h"
 #include "graph/graph.h"
 #include <math.h>
-#include <string.h>
 
 // Declares the node, with the first thing it makes as what is wanted.
 static tyn_result declare(tyn_graph *g, const tyn_pass_desc *pass, const void *params)

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 uint64_t tyn_phase_tables_hash(const tyn_scene *scene)
 {

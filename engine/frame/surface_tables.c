@@ -2,7 +2,6 @@
 #include "frame/surface_tables.h"
 #include "frame/alias_table.h"
 #include "scene/matrix.h"
-#include "shaders/surfaces/surface_args.h"
 #include "shaders/surfaces/surface_table_args.h"
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 #include "base/given.h"
 #include <tyndall/extend/hash.h>
 #include "gpu/device.h"
-#include <stdlib.h>
 
 typedef struct blob_header {
     char magic[8];

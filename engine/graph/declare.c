@@ -4,7 +4,6 @@
 #include <tyndall/extend/hash.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct tyn_builder {

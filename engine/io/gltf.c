@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/gltf_animation.h"
-#include "io/gltf_check.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_instances.h"
 #include "io/gltf_light.h"

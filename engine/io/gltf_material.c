@@ -3,9 +3,7 @@
 // Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic). Of specular-glossiness
 // (KHR_materials_pbrSpecularGlossiness) likewise: albedo = diffuse.
 #include "io/gltf_material.h"
-#include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tyndall/extend/hash.h>

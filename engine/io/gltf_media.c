@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include "io/uri.h"
 #include "io/volume.h"
 #include "scene/matrix.h"

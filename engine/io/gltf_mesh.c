@@ -1,8 +1,6 @@
 // gltf_mesh.c -- meshes of a glTF file as triangles in the world.
 #include "io/gltf_mesh.h"
 #include "base/grow.h"
-#include <float.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 // gltf_texture.c -- textures of a glTF file, read when a material wants them.
 #include "io/gltf_texture.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

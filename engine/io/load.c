@@ -2,8 +2,6 @@
 #include <tyndall/io.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 #include "io/bare.h"
 #include "io/gltf.h"
 #include "io/volume.h"

@@ -7,7 +7,6 @@
 #include "shade_args.h"
 #include "shade_faces.h"
 #include "shaders/common/scene_args.h"
-#include "shaders/light/env_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
 #include "shaders/walls/walls_links.glsl"

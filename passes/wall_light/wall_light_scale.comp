@@ -5,7 +5,6 @@
 // own, and farther or nearer.
 #include "wall_light_args.h"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/walls/rooms.h"
 
 layout(local_size_x = WALL_LIGHT_VPLS) in;
 TYN_ARGS(wall_light_args args);

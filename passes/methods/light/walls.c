@@ -2,7 +2,6 @@
 #include "passes/methods/light/sources.h"
 #include <tyndall/registry.h>
 #include <math.h>
-#include <string.h>
 
 static void add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
