@@ -123,11 +123,6 @@ static bool has_colors(const tyn_medium *m)
     return m->emission_grid || m->radiance_grid || m->albedo_grid;
 }
 
-static bool one_value(const float v[3])
-{
-    return v[0] == v[1] && v[1] == v[2];
-}
-
 // Texels of a resampled medium: as fine as its finest grid, within bounds.
 static void choose_size(const tyn_scene *scene, const double extent[3], uint32_t size[3])
 {
@@ -176,7 +171,7 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
         b->sigma_t_max = fmaxf(b->sigma_t_max, b->sigma_s[c] + b->sigma_a[c]);
     }
     out->grey =
-        equal && one_value(b->sigma_s) && one_value(b->sigma_a) && tyn_phase_is_grey(b->phase);
+        equal && vec_grey(b->sigma_s) && vec_grey(b->sigma_a) && tyn_phase_is_grey(b->phase);
     if (out->direct && first->volume >= 0) {
         memcpy(b->size, scene->volumes[first->volume].size, sizeof b->size);
     } else if (out->direct) {
@@ -329,11 +324,6 @@ static void sort_suns(struct light_block *suns, uint32_t count)
     }
 }
 
-static bool is_dark(const float color[3])
-{
-    return !(color[0] > 0 || color[1] > 0 || color[2] > 0);
-}
-
 // Lights that do not shine are left out: nobody lays out grids or shadow maps for them.
 static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
 {
@@ -341,7 +331,7 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
     for (int pass = 0; pass < 2; pass++) { // directional lights first
         for (uint32_t i = 0; i < scene->num_lights; i++) {
             const tyn_light *light = &scene->lights[i];
-            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || is_dark(light->color)) {
+            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || !vec_any(light->color)) {
                 continue;
             }
             struct light_block *b = &lights->scene[lights->num_directional + lights->num_lamps];
@@ -408,7 +398,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
                 b->direction[a] -= env->rows[r][a] * sun->direction[r];
             }
         }
-        out->lights.num_suns += !is_dark(b->color);
+        out->lights.num_suns += vec_any(b->color);
     }
     sort_suns(out->lights.suns, out->lights.num_suns);
 }
@@ -419,7 +409,7 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
     struct env_block *b = &out->environment;
     const bool has_map = env->size[0] && env->size[1];
     const float mean[3] = {(float)map->mean[0], (float)map->mean[1], (float)map->mean[2]};
-    if (!env->present || is_dark(env->radiance) || (has_map && is_dark(mean))) {
+    if (!env->present || !vec_any(env->radiance) || (has_map && !vec_any(mean))) {
         return; // it is black
     }
     b->has_map = has_map;

@@ -131,7 +131,7 @@ static tyn_result apply_colors(gltf_meshes *m, primitive *p)
                                  colors->components * sizeof(float));
     }
     const float *albedo = p->material->surface.albedo;
-    p->reflects = albedo[0] > 0 || albedo[1] > 0 || albedo[2] > 0;
+    p->reflects = vec_any(albedo);
     p->painted = (!equal && p->reflects) || p->material->cutoff > 0 || p->material->glow;
     return p->painted ? TYN_OK
                       : tyn_gltf_material_paint(&m->materials, p->material,

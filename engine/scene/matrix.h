@@ -46,6 +46,16 @@ static inline bool mat_invertible(const double m[16])
     return det > 1e-30 && det > 1e-6 * lengths && det < 1e30;
 }
 
+static inline bool vec_any(const float v[3]) // above 0
+{
+    return v[0] > 0 || v[1] > 0 || v[2] > 0;
+}
+
+static inline bool vec_grey(const float v[3]) // all are equal
+{
+    return v[0] == v[1] && v[1] == v[2];
+}
+
 static inline bool vec_finite(const float *v, int count)
 {
     bool finite = true;

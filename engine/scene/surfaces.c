@@ -44,20 +44,15 @@ bool tyn_surfaces_bounds(const tyn_surfaces *s, float lo[3], float hi[3])
     return any;
 }
 
-static bool emits(const tyn_surface_material *m)
-{
-    return m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
-}
-
 bool tyn_surfaces_emit(const tyn_surfaces *s)
 {
     // Every frame asks, and most scenes have no such material.
     bool any = false, used = false;
     for (uint32_t i = 0; i < s->num_materials && !any; i++) {
-        any = emits(&s->materials[i]);
+        any = vec_any(s->materials[i].emission);
     }
     for (uint32_t i = 0; i < s->num_triangles && any && !used; i++) {
-        used = emits(&s->materials[s->triangles[i].material]);
+        used = vec_any(s->materials[s->triangles[i].material].emission);
     }
     return used;
 }

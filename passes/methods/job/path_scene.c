@@ -1,5 +1,6 @@
 // path_scene.c -- see tyndall/extend/path_scene.h.
 #include <tyndall/extend/path_scene.h>
+#include "scene/matrix.h"
 #include "scene/phase.h"
 #include "shaders/common/bundles.h"
 #include <math.h>
@@ -80,11 +81,6 @@ static bool has_grids(const tyn_job *job)
     return false;
 }
 
-static bool equal3(const float v[3])
-{
-    return v[0] == v[1] && v[1] == v[2];
-}
-
 static uint32_t count_near_lamps(const tyn_frame_scene *frame)
 {
     const float *e = frame->medium.extent;
@@ -133,7 +129,7 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
     for (uint32_t i = 0; i < m->num_shapes; i++) {
         const struct shape_block *s = &frame->shapes[i];
         p->grey =
-            p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && tyn_phase_is_grey(s->phase);
+            p->grey && vec_grey(s->sigma_s) && vec_grey(s->sigma_a) && tyn_phase_is_grey(s->phase);
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
         p->glow |= s->colors[TYN_COLORS_EMISSION].size[0] || s->colors[TYN_COLORS_RADIANCE].size[0];
         p->albedo |= s->colors[TYN_COLORS_ALBEDO].size[0] > 0;

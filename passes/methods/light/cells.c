@@ -13,11 +13,6 @@ void tyn_put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_t d
     memcpy(extent, shape->extent, sizeof shape->extent);
 }
 
-static bool emits(const tyn_surface_material *m)
-{
-    return m->emission[0] > 0.0f || m->emission[1] > 0.0f || m->emission[2] > 0.0f;
-}
-
 // One channel is solved if medium and light allow it.
 static void choose_channels(tyn_sources *s, const tyn_scene *scene, const tyn_frame_scene *frame)
 {
@@ -38,7 +33,7 @@ static void choose_channels(tyn_sources *s, const tyn_scene *scene, const tyn_fr
     for (uint32_t i = 0; walls && i < surfaces->num_materials; i++) {
         const tyn_surface_material *m = &surfaces->materials[i];
         grey = grey && m->texture == TYN_NO_TEXTURE && m->albedo[0] == m->albedo[1] &&
-               m->albedo[1] == m->albedo[2] && !emits(m);
+               m->albedo[1] == m->albedo[2] && !tyn_is_lit(m->emission);
     }
     bool one = tyn_lattice_tint((const float(*)[3])colors, count, s->lattice.shape.tint) &&
                !s->sky.map.resource && !s->lamps.vpls; // which have the colours of surfaces
