@@ -24,6 +24,8 @@ typedef struct id_info {
     bool known;      // `value` is that of a 32-bit scalar or bool
     bool is_bool;    // type
     bool is_word;    // type: 32-bit integer
+    bool is_real;    // type: 32-bit float
+    bool merges;     // block: merge of a decided selection
     bool called;     // function
     bool gone;       // defined in code that is left out
 } id_info;
@@ -33,6 +35,7 @@ typedef struct module {
     size_t count;
     id_info *ids;
     uint32_t bound;
+    bool plain;          // it is known which ids each instruction refers to
     uint32_t *functions; // called, in the order in which they were found
     uint32_t num_functions;
     uint32_t *out;
@@ -184,7 +187,8 @@ static void specialize(module *m, size_t at, const uint32_t *spec, uint32_t num_
         return;
     }
     id_info *id = &m->ids[m->words[at + 2]];
-    if (id->spec && id->spec <= num_spec) {
+    const id_info *type = &m->ids[m->words[at + 1]];
+    if (id->spec && id->spec <= num_spec && (type->is_bool || type->is_word || type->is_real)) {
         id->value = op == SpvOpSpecConstant ? spec[id->spec - 1] : spec[id->spec - 1] != 0;
     } else {
         id->spec = 0;
@@ -195,12 +199,20 @@ static void read_globals(module *m, const uint32_t *spec, uint32_t num_spec)
 {
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
         const uint32_t *w = m->words + at, op = op_at(m, at);
+        m->plain = m->plain && op <= SpvOpPtrDiff && op != SpvOpDecorationGroup;
         if (op == SpvOpDecorate && w[2] == SpvDecorationSpecId) {
             m->ids[w[1]].spec = 1 + w[3];
+        } else if (op == SpvOpGroupDecorate) {
+            for (uint32_t i = 2; i < w[0] >> 16 && m->ids[w[1]].spec; i++) {
+                m->ids[w[i]].spec = m->ids[w[1]].spec;
+            }
         } else if (op == SpvOpTypeBool) {
             m->ids[w[1]].is_bool = true;
         } else if (op == SpvOpTypeInt) {
             m->ids[w[1]].is_word = w[2] == 32;
+            m->plain = m->plain && w[2] <= 32; // literals of OpSwitch
+        } else if (op == SpvOpTypeFloat) {
+            m->ids[w[1]].is_real = w[2] == 32;
         } else if (op >= SpvOpConstantTrue && op <= SpvOpSpecConstantOp) {
             read_constant(m, at);
             specialize(m, at, spec, num_spec);
@@ -250,7 +262,7 @@ static bool read_phi(module *m, size_t at, uint32_t block)
     return true;
 }
 
-// False where a block above `at` turns out to be reached from below: then blocks are not in the order that one pass over them needs.
+// False where the block stands above `at`: one pass over the function has missed it.
 static bool reach(module *m, size_t at, uint32_t block, block_state state)
 {
     id_info *b = &m->ids[block];
@@ -265,17 +277,18 @@ static bool reach(module *m, size_t at, uint32_t block, block_state state)
 static bool leave(module *m, size_t at, uint32_t block, uint32_t merge)
 {
     const uint32_t *w = m->words + at, op = op_at(m, at), length = w[0] >> 16;
-    bool ordered = true;
     if (op == SpvOpBranchConditional && merge && m->ids[w[1]].known) {
         m->ids[block].only = m->ids[w[1]].value ? w[2] : w[3];
+        m->ids[merge].merges = true;
         return reach(m, at, m->ids[block].only, LIVE);
     }
-    if (merge) {
-        ordered = reach(m, at, merge, MERGE_STUB);
-    }
+    bool ordered = !merge || reach(m, at, merge, MERGE_STUB);
     if (op == SpvOpBranch) {
         ordered = reach(m, at, w[1], LIVE) && ordered;
     } else if (op == SpvOpBranchConditional) {
+        if (!merge && (m->ids[w[2]].merges || m->ids[w[3]].merges)) {
+            return false; // it leaves the selection, and may only where one is declared
+        }
         ordered = reach(m, at, w[2], LIVE) && reach(m, at, w[3], LIVE) && ordered;
     } else if (op == SpvOpSwitch) { // selector, default, literals of 32 bits with their targets
         for (uint32_t i = 2; i < length; i += 2) {
@@ -336,16 +349,13 @@ static bool thin(module *m, size_t at)
     uint32_t block = 0, merge = 0;
     bool read = true, first = true;
     for (; op_at(m, at) != SpvOpFunctionEnd && read; at = next(m, at)) {
-        const uint32_t op = op_at(m, at);
-        if (op == SpvOpLabel) {
+        if (op_at(m, at) == SpvOpLabel) {
             block = m->words[at + 1];
             merge = 0;
             m->ids[block].state = first ? LIVE : m->ids[block].state;
             first = false;
         } else if (block && m->ids[block].state == LIVE) {
             read = read_live(m, at, block, &merge);
-        } else if (op > SpvOpPtrDiff) {
-            read = false; // it is not known which ids it defines
         }
     }
     return read;
@@ -368,14 +378,15 @@ static void keep_whole(module *m, size_t at)
 static void read_functions(module *m)
 {
     for (size_t at = HEADER; at < m->count; at = next(m, at)) {
-        if (op_at(m, at) == SpvOpEntryPoint) {
+        const uint32_t op = op_at(m, at);
+        if (op == SpvOpEntryPoint || (op == SpvOpFunction && !m->plain)) {
             call(m, m->words[at + 2]);
         }
     }
     for (uint32_t i = 0; i < m->num_functions; i++) {
         const size_t at = m->ids[m->functions[i]].at;
         find_blocks(m, at);
-        if (!thin(m, at)) {
+        if (!m->plain || !thin(m, at)) {
             keep_whole(m, at);
         }
     }
@@ -511,7 +522,8 @@ static void emit_all(module *m)
             }
         } else if (op >= SpvOpConstantTrue && op <= SpvOpSpecConstantOp) {
             emit_constant(m, at);
-        } else if (!((op == SpvOpName || op == SpvOpDecorate) && m->ids[w[1]].gone) &&
+        } else if (!((op == SpvOpName || op == SpvOpDecorate || op == SpvOpDecorateId) &&
+                     m->ids[w[1]].gone) &&
                    !(op == SpvOpDecorate && w[2] == SpvDecorationSpecId)) {
             emit_same(m, at);
         }
@@ -521,7 +533,7 @@ static void emit_all(module *m)
 size_t tyn_spirv_specialize(const uint32_t *words, size_t count, const uint32_t *spec,
                             uint32_t num_spec, uint32_t *out)
 {
-    module m = {.words = words, .count = count, .out = out};
+    module m = {.words = words, .count = count, .out = out, .plain = true};
     if (count <= HEADER || !is_whole(&m)) {
         memcpy(out, words, count * sizeof *words);
         return count;

@@ -7,7 +7,8 @@
 #include <stdint.h>
 
 // Writes the module with constant i set to spec[i] (i < num_spec) to `out`, which has room for `count` words: selections
-// whose condition is known become branches, and blocks and functions that nothing reaches go. What is not a whole module is
-// copied, for the driver to refuse. Returns the words written; 0: no memory.
+// whose condition is known become branches, and blocks and functions that nothing reaches go. Code stays whole in a module
+// with 64-bit integers, decoration groups or instructions beyond SPIR-V 1.6's core. Constants that are not of 32 bits keep
+// their default. What is not a whole module is copied, for the driver to refuse. Returns the words written; 0: no memory.
 size_t tyn_spirv_specialize(const uint32_t *words, size_t count, const uint32_t *spec,
                             uint32_t num_spec, uint32_t *out);

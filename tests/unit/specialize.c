@@ -127,18 +127,14 @@ static void every_kernel(void **state)
 // ---- modules written by hand --------------------------------------------------------------------
 
 // A compute shader of GLSL as glslang writes it: BODY in main, between functions `f` (which stores 1) and the end.
-#define MODULE(body)                                                                               \
-    "OpCapability Shader\n"                                                                        \
-    "OpMemoryModel Logical GLSL450\n"                                                              \
+#define MODULE_WITH(capability, decorate_bits, types, body)                                        \
+    "OpCapability Shader\n" capability "OpMemoryModel Logical GLSL450\n"                           \
     "OpEntryPoint GLCompute %main \"main\" %v\n"                                                   \
     "OpExecutionMode %main LocalSize 1 1 1\n"                                                      \
     "OpName %f \"f\"\n"                                                                            \
-    "OpDecorate %on SpecId 0\n"                                                                    \
-    "OpDecorate %bits SpecId 1\n"                                                                  \
-    "%void = OpTypeVoid\n"                                                                         \
+    "OpDecorate %on SpecId 0\n" decorate_bits "%void = OpTypeVoid\n"                               \
     "%bool = OpTypeBool\n"                                                                         \
-    "%uint = OpTypeInt 32 0\n"                                                                     \
-    "%fn = OpTypeFunction %void\n"                                                                 \
+    "%uint = OpTypeInt 32 0\n" types "%fn = OpTypeFunction %void\n"                                \
     "%ptr = OpTypePointer Private %uint\n"                                                         \
     "%v = OpVariable %ptr Private\n"                                                               \
     "%u0 = OpConstant %uint 0\n"                                                                   \
@@ -154,6 +150,7 @@ static void every_kernel(void **state)
     "OpFunctionEnd\n"                                                                              \
     "%main = OpFunction %void None %fn\n"                                                          \
     "%entry = OpLabel\n" body "OpFunctionEnd\n"
+#define MODULE(body) MODULE_WITH("", "OpDecorate %bits SpecId 1\n", "", body)
 
 // `on` and `bits` set; the result must be valid.
 static text specialized(const char *source, uint32_t on, uint32_t bits)
@@ -297,6 +294,79 @@ static void carried_value(void **state)
     expect(source, 0, 3, 1, 2, 2);
 }
 
+// if (on) { if (v == 0) { v = 0; } } where the inner one leaves by the outer one's merge block: that is declared by the outer.
+static void nested_exit(void **state)
+{
+    (void)state;
+    static const char source[] = MODULE("%x = OpLoad %uint %v\n"
+                                        "%is = OpIEqual %bool %x %u0\n"
+                                        "OpSelectionMerge %end None\n"
+                                        "OpBranchConditional %on %yes %end\n"
+                                        "%yes = OpLabel\n"
+                                        "OpBranchConditional %is %store %end\n"
+                                        "%store = OpLabel\n"
+                                        "OpStore %v %u0\n"
+                                        "OpBranch %end\n"
+                                        "%end = OpLabel\n"
+                                        "OpReturn\n");
+    expect(source, 1, 0, 0, 1, 2);
+    expect(source, 0, 0, 0, 1, 0);
+}
+
+// Instructions that this does not follow: all code stays, constants of 32 bits are filled in.
+static void kept_whole(void **state)
+{
+    (void)state;
+#define SELECTION                                                                                  \
+    "OpSelectionMerge %end None\n"                                                                 \
+    "OpBranchConditional %on %yes %end\n"                                                          \
+    "%yes = OpLabel\n"                                                                             \
+    "%y = OpIAdd %uint %u1 %bits\n"                                                                \
+    "%call = OpFunctionCall %void %f\n"                                                            \
+    "OpBranch %end\n"                                                                              \
+    "%end = OpLabel\n"                                                                             \
+    "OpReturn\n"
+    static const char grouped[] = MODULE_WITH(
+        "", "OpDecorate %all SpecId 1\n%all = OpDecorationGroup\nOpGroupDecorate %all %bits\n", "",
+        SELECTION);
+    static const char wide[] =
+        MODULE_WITH("OpCapability Int64\n", "OpDecorate %bits SpecId 1\nOpDecorate %k SpecId 0\n",
+                    "%long = OpTypeInt 64 1\n%k = OpSpecConstant %long 5\n",
+                    "%x = OpLoad %uint %v\n"
+                    "%wide = OpSConvert %long %x\n"
+                    "OpSelectionMerge %past None\n"
+                    "OpSwitch %wide %past -1 %case\n"
+                    "%case = OpLabel\n"
+                    "OpBranch %past\n"
+                    "%past = OpLabel\n" SELECTION);
+    expect(grouped, 0, 9, 1, 2, 1);
+    expect(wide, 0, 9, 1, 2, 1);
+    const text t = specialized(grouped, 0, 9);
+    assert_int_equal(count_of(&t, " 9\n"), 1);
+    free(t.chars);
+#undef SELECTION
+}
+
+// A decoration by ids of what goes.
+static void decorated_by_id(void **state)
+{
+    (void)state;
+    static const char source[] =
+        MODULE_WITH("OpCapability UniformDecoration\n",
+                    "OpDecorate %bits SpecId 1\nOpDecorateId %y UniformId %subgroup\n",
+                    "%subgroup = OpConstant %uint 3\n",
+                    "OpSelectionMerge %end None\n"
+                    "OpBranchConditional %on %yes %end\n"
+                    "%yes = OpLabel\n"
+                    "%y = OpIAdd %uint %u1 %bits\n"
+                    "OpStore %v %y\n"
+                    "OpBranch %end\n"
+                    "%end = OpLabel\n"
+                    "OpReturn\n");
+    expect(source, 0, 0, 0, 1, 0);
+    expect(source, 1, 0, 0, 1, 0);
+}
+
 static void what_is_no_module(void **state)
 {
     (void)state;
@@ -323,6 +393,9 @@ int main(void)
         cmocka_unit_test(loop),
         cmocka_unit_test(cases),
         cmocka_unit_test(carried_value),
+        cmocka_unit_test(nested_exit),
+        cmocka_unit_test(kept_whole),
+        cmocka_unit_test(decorated_by_id),
         cmocka_unit_test(what_is_no_module),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
