@@ -29,7 +29,7 @@ static void room(void **state)
         skip_without("room");
     }
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     reference_room(&scene, &view);
     const uint32_t samples = path_effort(40);
     double start = seconds();
@@ -94,7 +94,7 @@ static void spheres(void **state)
             skip_without(name);
         }
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         reference_sphere(&scene, &view, g);
         const uint32_t samples = path_effort(64);
         double start = seconds();

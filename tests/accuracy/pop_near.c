@@ -86,7 +86,7 @@ static double check(gpu_test *t, const shot *s, uint32_t size, double height, co
                     .cos_outer = (float)COS_OUTER,
                     .color = {1, 1, 1},
                     .position = {(float)lamp[0], (float)lamp[1], (float)lamp[2]}};
-    tyn_view view;
+    tyn_view view = {0};
     look(&view, s, size);
     picture p;
     picture_render(&p, t->dev, "pop", scene, &view, NULL, 1);

@@ -56,7 +56,7 @@ static void pictures(void **state)
     double worst = 0;
     for (int kind = 0; kind < PHASES_COUNT; kind++) {
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         picture reference = {0};
         make_cube(&scene, &view);
         const tyn_phase phase = phases_add(&scene, (phases_kind)kind);
@@ -133,7 +133,7 @@ static void same_lobe(void **state)
             continue;
         }
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         tyn_phase phase;
         picture with[2];
         make_cube(&scene, &view);
@@ -165,7 +165,7 @@ static void lobe_instead(void **state)
             continue;
         }
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         picture with[2];
         make_cube(&scene, &view);
         const tyn_phase phase = phases_add(&scene, PHASES_DROPLETS);
@@ -194,7 +194,7 @@ static void first_scattering(void **state)
     double worst = 0;
     for (int kind = 0; kind < PHASES_COUNT; kind++) {
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         picture ours;
         make_cube(&scene, &view);
         take(&scene, phases_add(&scene, (phases_kind)kind));

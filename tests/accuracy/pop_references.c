@@ -17,7 +17,7 @@ static void room(void **state)
         skip_without("room");
     }
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     reference_room(&scene, &view);
     picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
     const picture_error e = picture_compare(&p, &reference, 8);
@@ -52,7 +52,7 @@ static void spheres(void **state)
             skip_without(name);
         }
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         reference_sphere(&scene, &view, g);
         picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
         for (uint32_t c = 0; c < 3; c++) {

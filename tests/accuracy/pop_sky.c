@@ -302,7 +302,7 @@ static void run_case(gpu_test *t, const sky_case *k)
         return;
     }
     tyn_scene *scene = malloc(sizeof *scene);
-    tyn_view view;
+    tyn_view view = {0};
     picture reference, whole, unscattered;
     bool there = load(t, k, scene, &view);
     if (there && folder && k->from == SAMPLE) {

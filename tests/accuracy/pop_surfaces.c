@@ -95,7 +95,7 @@ static void check(void **state, tyn_scene *scene, tyn_view *view, const char *na
 static void floors(void **state)
 {
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     make_floor(&scene, &view);
     scene_add_sun(&scene, 0.6f, -0.8f, 0, 3, 3, 3);
     check(state, &scene, &view, "sun", under_sun);
@@ -125,7 +125,7 @@ static void under_emitter(void **state)
     const double h = 0.5, a = 0.5; // height and half side, m
     double s = sqrt(a * a + h * h), form = 4 / PI * (a / s) * atan(a / s); // twice two corners
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     make_floor(&scene, &view);
     uint32_t lamp = solids_material(&scene, BLACK, (float[]){2, 2, 2});
     solids_quad(&scene, (float[]){-0.5f, 0.5f, -0.5f}, (float[]){1, 0, 0}, (float[]){0, 0, 1},
@@ -306,7 +306,7 @@ static void dark_lamps(void **state)
     picture p[2];
     for (uint32_t dark = 0; dark < 2; dark++) {
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         make_floor(&scene, &view);
         const uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.2f, 0.1f}, BLACK);
         solids_quad(&scene, (float[]){-1.2f, 0, -1}, (float[]){0, 1, 0}, (float[]){0, 0, 2}, wall);
@@ -345,7 +345,7 @@ static void many_suns(void **state)
     const tyn_medium fog = grey_medium(0.3f, 0.1f, 0.5f);
     for (int medium = 0; medium < 2; medium++) {
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         make_floor(&scene, &view);
         for (int i = 0; i < 6; i++) {
             scene_add_sun(&scene, 0, -1, 0, irradiance[i], irradiance[i], irradiance[i]);

@@ -44,7 +44,7 @@ static float render(tyn_device *device, const char *method, const char *setting,
 {
     float middle = -1;
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     tyn_settings *settings = NULL;
     tyn_offline *offline = NULL;
     const tyn_log log = {print_log, NULL, TYN_LOG_WARN};

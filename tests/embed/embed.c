@@ -136,7 +136,7 @@ static void contexts_share_a_device(void **state)
     tyn_context *first = new_context(f, f->guest, "pop");
     tyn_context *second = new_context(f, other, "single");
 
-    tyn_view view;
+    tyn_view view = {0};
     target targets[HOST_SLOTS][2];
     for (int round = 0; round < 2; round++) {
         const uint32_t width = round ? 48 : WIDTH, height = round ? 64 : HEIGHT;

@@ -101,7 +101,7 @@ static void nothing(tyn_scene *s, tyn_view *v)
 static uint64_t key_after(change *what)
 {
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     make(&scene, &view);
     if (what) {
         what(&scene, &view);

@@ -50,7 +50,7 @@ static void set_view(tyn_view *view)
 static picture_error compare(gpu_test *t, const tyn_scene *scene, const picture *reference,
                              const char *settings)
 {
-    tyn_view view;
+    tyn_view view = {0};
     set_view(&view);
     picture p;
     picture_render(&p, t->dev, "constellation", scene, &view, settings, 0);
@@ -61,7 +61,7 @@ static picture_error compare(gpu_test *t, const tyn_scene *scene, const picture 
 
 static picture reference_of(gpu_test *t, const tyn_scene *scene, uint32_t samples)
 {
-    tyn_view view;
+    tyn_view view = {0};
     set_view(&view);
     picture p;
     path_reference(&p, t->dev, scene, &view, samples);

@@ -87,7 +87,7 @@ static int teardown(void **state)
 // A picture, and how many samples it has taken; `settings` a literal.
 static picture render(path_run *r, const tyn_scene *scene, const char *settings, double *samples)
 {
-    tyn_view view;
+    tyn_view view = {0};
     set_view(&view);
     view.outputs = TYN_OUTPUT_RADIANCE;
     tyn_offline *off = open_with(r->gpu, settings);
@@ -264,7 +264,7 @@ static void against_path(void **state)
                                    ? cube(media[i].sigma_s, media[i].sigma_a, media[i].g)
                                    : clumps(media[i].sigma_s, media[i].sigma_a, media[i].g);
             add_lights(scene, k);
-            tyn_view view;
+            tyn_view view = {0};
             set_view(&view);
             picture path = {0};
             path_run_picture(*state, &path, scene, &view, 64);

@@ -198,7 +198,7 @@ static void thin_furnace(void **state)
 {
     gpu_test *t = *state;
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     picture p;
     set_furnace(&scene, &view, 0.08f);
     static const char *const settings[] = {
@@ -283,7 +283,7 @@ static void dispatches_do_not_depend_on_ordinates(void **state)
 {
     gpu_test *t = *state;
     tyn_scene scene;
-    tyn_view view;
+    tyn_view view = {0};
     tyn_offline *off;
     uint32_t expected = 0;
     set_furnace(&scene, &view, 2);
@@ -314,7 +314,7 @@ static void residuum_after(void **state)
         {100, 8, 4, false}, {2, 13, 7, false}, {0.001f, 256, 256, false}, {2, 13, 7, true}};
     for (int i = 0; i < 4; i++) {
         tyn_scene scene;
-        tyn_view view;
+        tyn_view view = {0};
         tyn_offline *off;
         set_furnace(&scene, &view, cases[i].sigma_s); // g = 0.5, hops of 1/8 m
         if (cases[i].half_empty) {
