@@ -19,8 +19,8 @@ uint64_t graph_identity(const tyn_graph *g, const resource *r)
     return h ? h : 1;
 }
 
-// True if `p`, of which only the uses are known, has become what had the same name, shape and use before. `content`: only
-// if that is in it; 0 = whatever is in it.
+// Makes `p` the resource of the same name, shape and uses of the compilation before. False: there was none. `content`: what
+// it must hold; 0: anything.
 static bool inherit(heritage *from, bool only_histories, uint64_t identity, uint64_t content,
                     phys *p)
 {
