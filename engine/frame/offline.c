@@ -215,6 +215,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
 // Bytes of a pixel of a picture, by the bit of its output; 0: it is none.
 #define ROW(constant, bit, name, bytes, set) [bit] = bytes,
 static const uint32_t pixel_bytes[TYN_NUM_OUTPUTS] = {TYN_OUTPUTS(ROW)};
+#undef ROW
 
 const void *tyn_offline_output(tyn_offline *off, tyn_output output)
 {
