@@ -32,7 +32,7 @@
 #define RAYMARCH_SPOTS (1u << 27)         // there are lamps that shine in a cone
 #define RAYMARCH_LIGHT_CELLS (1u << 28)   // it is known where lights see all, or nothing
 #define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid
-#define RAYMARCH_NOISE (1u << 30)  // places at which medium and light are looked up are moved
+#define RAYMARCH_NOISE (1u << 30) // places at which medium and light are looked up are moved
 
 struct raymarch_args {
     float step;       // longest step, m
