@@ -82,6 +82,10 @@ static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
         [PATH_PORT_MEAN_MULTIPLE] = history(g, "path_multiple", lw, lh),
         [PATH_PORT_MEAN_TRANSMITTANCE] = history(g, "path_transmittance", lw, lh),
     };
+    if (job->refs.field[0].resource) {
+        params.ended = 1;
+        memcpy(&refs[PATH_PORT_FIELD_RED], job->refs.field, sizeof job->refs.field);
+    }
     const tyn_resume *resume = job->view->resume;
     if (resume) {
         params.resumed = job->view->first_sample == resume->num_samples;

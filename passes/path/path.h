@@ -22,6 +22,10 @@
     X(PATH, RESUMED_MULTIPLE, resumed_multiple, OPTIONAL, IMAGE_2D, "as mean_multiple"), \
     X(PATH, RESUMED_TRANSMITTANCE, resumed_transmittance, OPTIONAL, IMAGE_2D, \
         "as mean_transmittance"), \
+    X(PATH, FIELD_RED, field_red, OPTIONAL, IMAGE_3D, \
+        "over the media's box: fluence (x) and net flux along M's axes of red light that has scattered, W/m^2"), \
+    X(PATH, FIELD_GREEN, field_green, OPTIONAL, IMAGE_3D, "the same"), \
+    X(PATH, FIELD_BLUE, field_blue, OPTIONAL, IMAGE_3D, "the same"), \
     X(PATH, RADIANCE, radiance, OUT, RGBA_2D, "radiance W/(m^2 sr), alpha"), \
     X(PATH, ERROR, error, OUT, RGBA_2D, "standard error of the radiance, W/(m^2 sr)"), \
     X(PATH, SINGLE, single, OUT, RGBA_2D, "first-order scattering, W/(m^2 sr)"), \

@@ -10,7 +10,22 @@ TYN_UPDATE(20, counters, counters_block counters);
 TYN_WRITE(21, layers, path_partial_layers layers[]);
 TYN_UPDATE(22, queue, uint taken);
 
+layout(binding = 23) uniform sampler3D field_red_tex;
+layout(binding = 24) uniform sampler3D field_green_tex;
+layout(binding = 25) uniform sampler3D field_blue_tex;
+
+#define PATH_FIELD
 #include "shaders/path/path.glsl"
+
+// Of radiance (fluence + 3 flux . direction) / (4 pi).
+vec3 path_field(vec3 at, vec3 way, media_point m)
+{
+    const vec3 place = at / medium.extent;
+    const vec4 red = textureLod(field_red_tex, place, 0.0), green = textureLod(field_green_tex, place, 0.0),
+               blue = textureLod(field_blue_tex, place, 0.0);
+    const vec3 along = -vec3(dot(red.yzw, way), dot(green.yzw, way), dot(blue.yzw, way));
+    return max(vec3(red.x, green.x, blue.x) + 3.0 * phase_mean_cosine(m.phase) * along, 0.0) * (0.25 / HG_PI);
+}
 
 // Welford's running mean and sum of squared deviations: exact 0 for equal samples, however many.
 path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);

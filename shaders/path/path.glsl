@@ -31,6 +31,8 @@
 //   float path_begin_pdf(vec3 direction)  -- probes: 1/sr of the first directions of the path just begun
 //   void path_direct(vec3 direction, vec3 irradiance)  -- probes: uncollided lamps and emitters at the point itself
 //   void path_end(path_result)                       -- the path's contribution
+//   PATH_FIELD, and vec3 path_field(vec3 at, vec3 way, media_point m)  -- where paths may end in a field: what scatters there
+//     against the path's way of light that has scattered before, W/(m^2 sr)
 #ifndef TYN_PATH_GLSL
 #define TYN_PATH_GLSL
 #ifndef PATH_ENDS_AT_FIRST_SURFACE
@@ -70,6 +72,9 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
 float path_begin_pdf(vec3 direction);
 void path_direct(vec3 direction, vec3 irradiance);
 void path_end(path_result result);
+#ifdef PATH_FIELD
+vec3 path_field(vec3 at, vec3 way, media_point m);
+#endif
 
 const float PATH_MIXTURE_FIRST = 0.2, PATH_MIXTURE_LOG2_DECAY = -0.32192809; // log2 0.8
 const float PATH_ROULETTE = 0.1; // paths, and transmittance, below this weight are played for
@@ -659,6 +664,13 @@ void path_run(uint element, uint index, uint end)
                 pending *= path_transmittance(f.at, direction, distance, rng, path.steps);
                 path_add(result, pending, path.depth);
             }
+
+#ifdef PATH_FIELD
+            // The last scattering: the flight that follows brings light straight from its source, the field all other.
+            if ((FLAGS & TYN_PATH_ENDED) != 0u && path.depth >= args.max_depth && !at_surface) {
+                path_add(result, weight * path_field(f.at, path.way, f.m), path.depth + 1u);
+            }
+#endif
 
             // The next direction.
             vec3 d;

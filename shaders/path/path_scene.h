@@ -38,6 +38,7 @@ typedef struct tyn_path_params {
     uint32_t resumed;       // images: the statistics before are those that are gone on from
     uint32_t layers;        // images: single, multiple and transmittance as well
     uint32_t opaque;        // images: a background is seen, alpha is 1
+    uint32_t ended;         // images: in a field, after max_depth scatterings
     uint32_t scattered;     // probes: without light that has not scattered
     float world[3][3];      // probes: the world's axes in M
     float lamp_power[3];    // balance: of the lamps inside, W
@@ -114,5 +115,5 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
         (p->textures ? TYN_PATH_TEXTURES : 0) | (p->keep_few ? TYN_PATH_KEEP_FEW : 0) |
         (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0) | (p->glow ? TYN_PATH_GLOW : 0) |
-        (p->albedo ? TYN_PATH_ALBEDO : 0);
+        (p->albedo ? TYN_PATH_ALBEDO : 0) | (p->ended ? TYN_PATH_ENDED : 0);
 }

@@ -38,6 +38,9 @@ typedef struct tyn_scene_refs {
     tyn_ref shown_camera;
     // Tables of phase functions (phase_table.glsl); {0}: every phase function is one lobe.
     tyn_ref phases;
+    // Light that has scattered, red, green and blue: 3D images over the media's box of fluence (x) and net flux along M's axes, W/m^2.
+    // Paths of view.max_depth scatterings end in it; {0}: they end in the dark.
+    tyn_ref field[3];
     tyn_ref resumed[6]; // tyn_view.resume: its images, in their order; {0}: none
 } tyn_scene_refs;
 
@@ -62,6 +65,8 @@ typedef struct tyn_job {
     // Between march and composite: all that are registered. tyn_add_results calls them.
     const tyn_picture_hook *const *hooks;
     uint32_t num_hooks;
+    // By TYN_INDEX_*: outputs go here, to be read in the same frame (tyn_job_declare). NULL: they are given out.
+    tyn_ref *made;
     const tyn_log *log; // for what makes the frame impossible; warnings: tyn_job_warn
     void (*warn)(void *user, const char *line); // goes to the report's warnings, once per text
     void *warn_user;
