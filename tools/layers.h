@@ -18,6 +18,7 @@
     X("single", SINGLE, "single.", "RGB", 0, SUM, "single scattering", RADIANCE)                   \
     X("multiple", MULTIPLE, "multiple.", "RGB", 0, SUM, "multiple scattering", RADIANCE)           \
     X("error", ERROR, "error.", "RGB", 0, ROUNDED, "standard error", RADIANCE)                     \
+    X("bias", BIAS, "bias.", "RGB", 0, ROUNDED, "estimated error of pop", RADIANCE)                \
     X("albedo", ALBEDO, "albedo.", "RGB", 0, ROUNDED, NULL, VALUES)                                \
     X("normal", NORMAL, "normal.", "XYZ", 0, ROUNDED, NULL, VALUES)                                \
     X("low", LOW, "resume_low.", "RGBA", 0, KEPT, NULL, VALUES)                                    \

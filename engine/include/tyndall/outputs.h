@@ -20,6 +20,7 @@
 // DEVIATION     RGBA32F; RGB: sum of squared deviations of the radiance; A: mean alpha
 // ALBEDO        RGBA32F; RGB 0 to 1; A: share of the pixel that shows a surface
 // NORMAL        RGBA32F; XYZ for shading, world, towards the camera; shorter than 1 where they differ
+// BIAS          RGBA32F: estimated error of the picture that was refined (refined), root mean square; ERROR: of the result
 // Others are RGBA32F.
 #define TYN_OUTPUTS(X)                                                                             \
     X(RADIANCE, 0, "radiance", 16, VIEW)                                                           \
@@ -37,10 +38,14 @@
     X(LOW, 12, "low", 16, SAMPLES)                                                                 \
     X(DEVIATION, 13, "deviation", 16, SAMPLES)                                                     \
     X(ALBEDO, 14, "albedo", 16, GUIDE)                                                             \
-    X(NORMAL, 15, "normal", 16, GUIDE)
+    X(NORMAL, 15, "normal", 16, GUIDE)                                                             \
+    X(BIAS, 16, "bias", 16, SAMPLES)
 
 #define TYN_OUTPUT_BIT(constant, bit, name, bytes, set) TYN_OUTPUT_##constant = 1 << bit,
 typedef enum tyn_output { TYN_OUTPUTS(TYN_OUTPUT_BIT) } tyn_output; // a set
+
+#define TYN_OUTPUT_INDEX(constant, bit, name, bytes, set) TYN_INDEX_##constant = bit,
+enum { TYN_OUTPUTS(TYN_OUTPUT_INDEX) };
 
 #define TYN_OUTPUT_ONE(constant, bit, name, bytes, set) +1
 enum { TYN_NUM_OUTPUTS = 0 TYN_OUTPUTS(TYN_OUTPUT_ONE) };

@@ -1,10 +1,13 @@
 // job.c -- what methods give the graph of what a job asks for.
 #include <tyndall/extend/job.h>
+#include "base/fault.h"
 #include "frame/output.h"
+#include "registry/registry.h"
 #include "passes/export/export.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 // Into the host's image, if it lent one for this.
 static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
@@ -24,9 +27,39 @@ static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, ty
     }
 }
 
+tyn_result tyn_job_declare(tyn_graph *g, const tyn_job *job, const char *name, tyn_ref *made)
+{
+    const tyn_method *method = tyn_method_find(name);
+    if (!method) {
+        const tyn_result missing =
+            TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
+                      "method '%s' needs method '%s', which is not there", job->method->name, name);
+        tyn_graph_refuse(g, missing);
+        return missing;
+    }
+    tyn_job own = *job;
+    own.method = &method->info;
+    own.outputs &= method->info.outputs;
+    own.num_hooks = 0;
+    own.made = made;
+    memset(made, 0, TYN_NUM_OUTPUTS * sizeof *made);
+    return method->declare(g, &own);
+}
+
+uint32_t tyn_job_batch(const tyn_job *job, const char *name)
+{
+    const tyn_method *method = tyn_method_find(name);
+    return method && method->batch ? method->batch(job) : 1;
+}
+
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
 {
-    if (job->outputs & which) {
+    for (uint32_t i = 0; job->made && i < TYN_NUM_OUTPUTS; i++) {
+        if (job->outputs & which & 1u << i) {
+            job->made[i] = ref;
+        }
+    }
+    if (job->outputs & which && !job->made) {
         tyn_graph_output(g, tyn_job_output_name(which), ref,
                          job->readback && which != TYN_OUTPUT_COMPOSITE &&
                              which != TYN_OUTPUT_LIGHT);

@@ -7,7 +7,7 @@ static uint32_t points_outside(const tyn_job *job)
 {
     const float *m = job->frame->m_from_world, *extent = job->frame->medium.extent;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < job->view->num_points; i++) {
+    for (uint32_t i = 0; job->view->points && i < job->view->num_points; i++) {
         const float *p = job->view->points[i];
         bool outside = false;
         for (int a = 0; a < 3; a++) {

@@ -24,6 +24,14 @@ typedef struct tyn_method {
 } tyn_method;
 #define TYN_PASS_NAME(name) #name
 
+// Adds the nodes of another method to the frame and gives what it makes of job->outputs, by TYN_INDEX_*; {0}: it does not make
+// it. Its passes must be among those of the method that calls. Hooks are left to the caller. `job` may have a view and a camera of
+// its own.
+TYN_API tyn_result tyn_job_declare(tyn_graph *g, const tyn_job *job, const char *method,
+                                   tyn_ref *made);
+// Largest work of a record of it; 1: it is not progressive.
+TYN_API uint32_t tyn_job_batch(const tyn_job *job, const char *method);
+
 // Adds a method, or a hook (job.h), to those of the process, for good: its tables must live as long. The names must be new,
 // and those of a method's passes known. Else a log line and TYN_ERR_PARAMS, and nothing is added.
 TYN_API tyn_result tyn_method_register(const tyn_method *method, const tyn_log *log);
