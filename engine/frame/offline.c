@@ -32,7 +32,8 @@ struct tyn_offline {
     tyn_node_report *nodes;
     uint32_t num_nodes;
     bool progressive;
-    shown_part shown;                // of the last frame's pictures
+    bool makes_pictures; // of its samples, which need be done for the last of them alone
+    shown_part shown;    // of the last frame's pictures
     void *pictures[TYN_NUM_OUTPUTS]; // parts of them, by the output's bit
 };
 
@@ -58,6 +59,7 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
     off->submission.dev = dev;
     tyn_method_info info; // of a method that is none the context complains
     off->progressive = tyn_method_named(params->method, &info) && info.progressive;
+    off->makes_pictures = !info.reference;
     tyn_result result = tyn_context_create(
         dev,
         tyn_context_params(.method = params->method, .settings = params->settings,
@@ -196,18 +198,27 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     off->num_nodes = 0;
     off->samples = 0;
     start = tyn_now_ms();
+    bool stopped = false;
     for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
+        frame.recompute = recompute && done == 0;
         part.first_sample = view->first_sample + done;
         part.num_samples = samples - done < batch ? samples - done : batch;
+        part.unfinished = off->makes_pictures && done + part.num_samples < samples;
         result = submit(off, &frame);
         off->samples += result == TYN_OK ? part.num_samples : 0;
         if (result == TYN_OK && samples > batch) {
             const double fraction = (double)(done + part.num_samples) / samples;
             add_record(off);
             bool go_on = !off->progress || off->progress(off->progress_user, fraction);
-            result = go_on ? TYN_OK : TYN_ERR_STOPPED;
+            stopped = stopped || !go_on;
+            if (stopped && !part.unfinished) {
+                break;
+            } else if (stopped) { // one more, which makes the picture
+                samples = done + part.num_samples + 1;
+            }
         }
     }
+    result = result == TYN_OK && stopped ? TYN_ERR_STOPPED : result;
     off->frame_ms = tyn_now_ms() - start;
     return result;
 }

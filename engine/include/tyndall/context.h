@@ -134,6 +134,8 @@ typedef struct tyn_view {
     const float (*points)[3]; // PROBE: world positions
     uint32_t num_points;
     bool scattered_only; // PROBE: without the uncollided light
+    // Progressive methods: more samples follow before anybody looks. Pictures may be left as they were (refined).
+    bool unfinished;
     // Frame number of a sequence: importance.smoothing takes a step when it changes.
     uint64_t time_index;
     uint32_t cut; // another number forgets what earlier frames left (importance.smoothing,
