@@ -10,6 +10,7 @@ enum { MAX_RESOURCES = 256, NAME = 48 };
 typedef struct resource {
     char name[NAME];
     bool made;     // a node before this one has it as an output
+    bool many;     // several nodes have an output of this name: barriers on it may be of any
     bool readable; // the last barrier on it makes it visible to reads
 } resource;
 
@@ -68,8 +69,8 @@ static void end_node(graph_check *g)
 {
     for (uint32_t i = 0; i < g->num_inputs; i++) {
         const resource *r = &g->resources[g->inputs[i]];
-        g->num_reads += r->made;
-        g->num_missing += r->made && !r->readable;
+        g->num_reads += r->made && !r->many;
+        g->num_missing += r->made && !r->many && !r->readable;
     }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
         g->resources[g->outputs[i]].made = true;
@@ -96,8 +97,14 @@ static void take_line(graph_check *g, const char *line)
     if (strncmp(line, "in ", 3) == 0) {
         add_port(g, line + 3 + strspn(line + 3, " "), g->inputs, &g->num_inputs);
     } else if (strncmp(line, "out ", 4) == 0 || strncmp(line, "inout ", 6) == 0) {
+        const bool made_anew = line[0] == 'o';
         line += strcspn(line, " ");
+        const uint32_t before = g->num_outputs;
         add_port(g, line + strspn(line, " "), g->outputs, &g->num_outputs);
+        if (made_anew && g->num_outputs > before) {
+            resource *r = &g->resources[g->outputs[before]];
+            r->many = r->many || r->made;
+        }
     } else if (strncmp(line, "barrier ", 8) == 0) {
         barrier(g, line + 8);
     }

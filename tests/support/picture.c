@@ -141,10 +141,12 @@ void picture_frame(picture *p, tyn_device *dev, tyn_offline *off, const tyn_scen
 void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_scene *scene,
                     const tyn_view *view, const char *settings, uint32_t spp)
 {
+    tyn_method_info told;
+    tyn_method_named(method, &told);
     tyn_offline *off = scene_open(dev, method, settings);
     tyn_view v = *view;
     v.num_samples = spp;
-    picture_frame(p, dev, off, scene, &v, !strcmp(method, "path"));
+    picture_frame(p, dev, off, scene, &v, told.outputs & TYN_OUTPUT_ERROR);
     tyn_offline_destroy(&off);
 }
 

@@ -1,0 +1,217 @@
+// method.c -- method "refined": pop's picture corrected by a few paths, and with many of them the truth.
+//
+// The paths are those of method "path", whole light in an image whose pixels may be larger than the picture's; the pass refine fits
+// what they say beyond pop on pop's layers (refined.md).
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
+#include "refine/refine.h"
+#include "refine_camera/refine_camera.h"
+#include "refine_field/refine_field.h"
+#include "refine_points/refine_points.h"
+#include <math.h>
+#include <string.h>
+
+enum { FIELD_CELLS = 32 }; // along the longest side, of the field in which paths end
+
+static tyn_refine_params params_of(const tyn_job *job)
+{
+    tyn_refine_params params;
+    tyn_settings_params(job->settings, &tyn_pass_refine, &params);
+    params.picture[0] = job->view->width;
+    params.picture[1] = job->view->height;
+    params.unfinished = job->view->unfinished;
+    return params;
+}
+
+// The job of the image of samples.
+static void samples_job(const tyn_job *job, int32_t grid, tyn_view *view, tyn_job *samples)
+{
+    *view = *job->view;
+    view->width = (view->width + (uint32_t)grid - 1) / (uint32_t)grid;
+    view->height = (view->height + (uint32_t)grid - 1) / (uint32_t)grid;
+    memset(view->whole, 0, sizeof view->whole);
+    memset(view->corner, 0, sizeof view->corner);
+    view->resume = NULL;
+    *samples = *job;
+    samples->view = view;
+    samples->outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
+}
+
+static uint32_t batch(const tyn_job *job)
+{
+    tyn_view view;
+    tyn_job samples;
+    samples_job(job, params_of(job).grid, &view, &samples);
+    return tyn_job_batch(&samples, "path");
+}
+
+// Delta-scaled mean free paths of the densest place in a cell of the field.
+static float depth_of_cell(const tyn_frame_scene *frame)
+{
+    const struct medium_block *m = &frame->medium;
+    const float *e = m->extent;
+    float most = 0;
+    for (uint32_t i = 0; i < m->num_shapes; i++) {
+        for (int c = 0; c < 3; c++) {
+            most = fmaxf(most, 1 - (float)tyn_phase_delta_fraction(frame->shapes[i].phase[c]));
+        }
+    }
+    return most * frame->majorant * fmaxf(e[0], fmaxf(e[1], e[2])) / FIELD_CELLS;
+}
+
+// Scatterings after which paths end in pop's field, when they have forgotten where they went; 0: they do not. In media that few
+// paths cross in so many the noise is made before, and it is not worth the bias. Where cells are thick the field is none to end in.
+// Surfaces send light that the field has not.
+static uint32_t depth_of(const tyn_job *job, const tyn_refine_params *params)
+{
+    enum { LEAST = 8, MOST = 64, DEEP = 6, THICK = 2 };
+    const tyn_frame_scene *frame = job->frame;
+    const bool can = !frame->empty && !frame->num_triangles && !tyn_is_periodic(frame);
+    if (!params->ended || !can) {
+        return 0;
+    }
+    if (params->depth) {
+        return (uint32_t)params->depth;
+    }
+    float least, most;
+    tyn_range_of_g(job->scene, &least, &most);
+    const float depth = fmaxf(ceilf(1.4f / fmaxf(1 - most, 0.001f)), LEAST);
+    const float *e = frame->medium.extent;
+    const float shortest = fminf(e[0], fminf(e[1], e[2]));
+    const bool worth = frame->majorant * shortest >= DEEP * depth && depth <= MOST;
+    return worth && depth_of_cell(frame) < THICK ? (uint32_t)depth : 0;
+}
+
+// The places of the field, and pop's job with probes there.
+static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view, tyn_refine_field_params *field)
+{
+    const tyn_frame_scene *frame = base->frame;
+    const tyn_extent size = tyn_lattice_dims(frame->medium.extent, FIELD_CELLS);
+    const tyn_refine_points_params places = {
+        {size.x, size.y, size.z},
+        {frame->medium.extent[0], frame->medium.extent[1], frame->medium.extent[2]}};
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_graph_add(g, &tyn_pass_refine_points, &places, refs);
+    memcpy(field->size, places.size, sizeof field->size);
+    for (int w = 0; w < 3; w++) {
+        for (int a = 0; a < 3; a++) {
+            field->world[w][a] = frame->m_from_world[w * 4 + a];
+        }
+    }
+    *view = *base->view;
+    view->points = NULL;
+    view->num_points = size.x * size.y * size.z;
+    view->scattered_only = true;
+    base->view = view;
+    base->refs.points = refs[REFINE_POINTS_PORT_POINTS];
+    base->outputs |= TYN_OUTPUT_PROBE;
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    const tyn_refine_params params = params_of(job);
+    const uint32_t depth = depth_of(job, &params);
+    tyn_refine_field_params field;
+    memset(&field, 0, sizeof field);
+    tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}}, path[TYN_NUM_OUTPUTS] = {{0}};
+    tyn_job base = *job, samples;
+    tyn_view view, base_view;
+    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
+    base.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_SINGLE |
+                   (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH));
+    if (depth) {
+        ask_field(g, &base, &base_view, &field);
+    }
+    tyn_job_declare(g, &base, "pop", pop);
+    samples_job(job, params.grid, &view, &samples);
+    if (depth) {
+        tyn_ref refs[TYN_MAX_PORTS] = {[REFINE_FIELD_PORT_RESULTS] = pop[TYN_INDEX_PROBE]};
+        tyn_graph_add(g, &tyn_pass_refine_field, &field, refs);
+        memcpy(samples.refs.field, &refs[REFINE_FIELD_PORT_RED], sizeof samples.refs.field);
+        view.max_depth = depth;
+    }
+    if (params.grid > 1) {
+        tyn_refine_camera_params camera;
+        memset(&camera, 0, sizeof camera);
+        tyn_refine_camera(&job->frame->camera, (uint32_t)params.grid, &camera.camera);
+        tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+        tyn_graph_add(g, &tyn_pass_refine_camera, &camera, refs);
+        samples.refs.camera = refs[REFINE_CAMERA_PORT_CAMERA];
+    }
+    tyn_job_declare(g, &samples, "path", path);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [REFINE_PORT_BASE] = pop[TYN_INDEX_RADIANCE],
+        [REFINE_PORT_SINGLE] = pop[TYN_INDEX_SINGLE],
+        [REFINE_PORT_SAMPLES] = path[TYN_INDEX_RADIANCE],
+        [REFINE_PORT_NOISE] = path[TYN_INDEX_ERROR],
+    };
+    tyn_graph_add(g, &tyn_pass_refine, &params, refs);
+    tyn_add_results(g, job,
+                    (tyn_picture){refs[REFINE_PORT_RADIANCE], pop[TYN_INDEX_TRANSMITTANCE],
+                                  pop[TYN_INDEX_DEPTH]});
+    tyn_job_output(g, job, TYN_OUTPUT_ERROR, refs[REFINE_PORT_ERROR]);
+    tyn_job_output(g, job, TYN_OUTPUT_BIAS, refs[REFINE_PORT_BIAS]);
+    tyn_job_output(g, job, TYN_OUTPUT_SINGLE, pop[TYN_INDEX_SINGLE]);
+    return tyn_graph_status(g);
+}
+
+static const char *const passes[] = {
+    TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_CELL_PASSES(TYN_PASS_NAME),
+    TYN_LATTICE_PASSES(TYN_PASS_NAME),
+    TYN_GATHER_PASSES(TYN_PASS_NAME),
+    TYN_SURFACE_PASSES(TYN_PASS_NAME),
+    TYN_FIELD_PASSES(TYN_PASS_NAME),
+    "refine_points",
+    "refine_field",
+    "refine_camera",
+    "path",
+    "refine",
+    TYN_PICTURE_PASSES(TYN_PASS_NAME),
+    NULL,
+};
+
+static double ended(const tyn_regime *r)
+{
+    (void)r;
+    return 0.1;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "samples",
+     .advice = {"starts as 'pop'; each sample takes some of its error away (--refine N)"},
+     .source = "passes/refined/refined.md, \"Measured\""},
+    {.key = "paths that are ended",
+     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(albedo, 0.9999)},
+     .error = ended,
+     .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
+                 "paths end after so many steps (-D path.max_steps), and the picture is refined "
+                 "towards what is left of them: take 'pop'",
+                 {TYN_FIGURE(depth)}},
+     .source = "docs/stress.md, \"What is found\""},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
+static const tyn_promise promise = {.furnace = 0.02, .cube_isotropic = 0.03};
+
+const tyn_method tyn_method_refined = {
+    .info = {.name = "refined",
+             .summary = "pop corrected by a few paths, fitted on its layers",
+             .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
+                        TYN_OUTPUT_SINGLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_BIAS |
+                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL,
+             .progressive = true,
+             .traces_rays = true,
+             .phases = TYN_PHASES_OF_ONE_MEDIUM,
+             .limits = limits,
+             .promise = &promise},
+    .reads_env_cdf = true,
+    .batch = batch,
+    .passes = passes,
+    .declare = declare,
+};

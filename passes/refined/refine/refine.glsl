@@ -1,0 +1,77 @@
+// refine.glsl -- where planes and levels lie in the images of the pass refine.
+#ifndef TYN_REFINE_GLSL
+#define TYN_REFINE_GLSL
+#include "refine_args.h"
+TYN_ARGS(refine_args args);
+
+// Texels of a level.
+uvec2 refine_size(uint level)
+{
+    return (args.cells + (1u << level) - 1u) >> level;
+}
+
+// First texel of a level: level 0, to the right of it the others, below each other.
+uvec2 refine_corner(uint level)
+{
+    if (level == 0u) {
+        return uvec2(0u);
+    }
+    uint y = 0u;
+    for (uint l = 1u; l < level; l++) {
+        y += refine_size(l).y;
+    }
+    return uvec2(args.cells.x, y);
+}
+
+// Texels of all levels.
+uvec2 refine_pyramid()
+{
+    uint y = 0u;
+    for (uint l = 1u; l < uint(REFINE_LEVELS); l++) {
+        y += refine_size(l).y;
+    }
+    return uvec2(args.cells.x + refine_size(1u).x, max(args.cells.y, y));
+}
+
+// First texel of a plane of moments.
+uvec2 refine_moment(uint plane)
+{
+    return uvec2(plane % uint(REFINE_MOMENTS_ROW), plane / uint(REFINE_MOMENTS_ROW)) * refine_pyramid();
+}
+
+// First texel of a window in a plane of coefficients: those of the smallest window, to the right the pyramid.
+uvec2 refine_window(uint window)
+{
+    return window == 0u ? uvec2(0u) : uvec2(args.cells.x, 0u) + refine_corner(window - 1u);
+}
+
+uint refine_level_of(uint window)
+{
+    return window == 0u ? 0u : window - 1u;
+}
+
+uvec2 refine_coefficient(uint plane)
+{
+    return uvec2(plane % uint(REFINE_COEFFICIENTS_ROW), plane / uint(REFINE_COEFFICIENTS_ROW)) *
+           (refine_pyramid() + uvec2(args.cells.x, 0u));
+}
+
+// Of a plane of cells.
+uvec2 refine_cell(uint plane)
+{
+    return uvec2(plane % uint(REFINE_CELLS_ROW), plane / uint(REFINE_CELLS_ROW)) * args.cells;
+}
+
+// 1 / radiance: squares with this weight are a share of the light, and not of each pixel's.
+vec3 refine_weight(vec3 pop, vec3 mean)
+{
+    return 1.0 / (max(pop, 0.0) + 0.05 * mean + 1e-20);
+}
+
+refine_sums refine_add(refine_sums a, refine_sums b, float w)
+{
+    return refine_sums(a.cells + w * b.cells, a.confirmed + w * b.confirmed, a.doubt + w * b.doubt,
+                       a.change + w * b.change, a.residual + w * b.residual, a.noise + w * b.noise,
+                       a.excess + w * b.excess, a.spread + w * b.spread);
+}
+#endif

@@ -1,0 +1,63 @@
+// refine_args.h -- push constants, images and sums of the pass refine. Included by C and GLSL; scalar layout.
+//
+// A cell is 2 x 2 texels of the image of samples, each of which is a part: what is fitted on three parts is judged by the fourth.
+// Level l of the pyramid has texels of 2^l x 2^l cells.
+#ifndef TYN_REFINE_ARGS_H
+#define TYN_REFINE_ARGS_H
+#include "shaders/common/shared.h"
+
+#define REFINE_PARTS 4
+#define REFINE_LEVELS 7
+#define REFINE_WINDOWS 8 // one a level, and one of cells that is smaller
+#define REFINE_TILE 8    // cells along a side of a tile, for which one candidate is chosen
+// Candidates: no change; then by window a fit on pop alone, and one on all layers.
+#define REFINE_CANDIDATES (1 + 2 * REFINE_WINDOWS)
+
+// Planes of images, so many of them side by side.
+#define REFINE_CELL_POP 0    // mean of pop's picture; A: pixels
+#define REFINE_CELL_SINGLE 1 // of its single scattering
+#define REFINE_CELL_PARTS 2  // of the samples less pop's picture, by part
+#define REFINE_CELLS 6
+#define REFINE_CELLS_ROW 2
+#define REFINE_MOMENTS                                                                             \
+    18 // six products of layers, then three of layers and residuals for each part
+#define REFINE_MOMENTS_ROW 4
+#define REFINE_COEFFICIENTS 12 // three for each part
+#define REFINE_COEFFICIENTS_ROW 3
+#define REFINE_FINAL 3 // coefficients of pop, single and 1
+
+// Relative error that pop is taken to have where samples do not tell: the root mean square over the suites' scenes.
+#define REFINE_PRIOR 0.06f
+
+struct refine_args {
+    tyn_uvec2 picture; // pixels
+    tyn_uvec2 samples; // pixels of the image of samples
+    tyn_uvec2 cells;
+    tyn_uint grid;   // pixels along a side of one of samples
+    tyn_uint level;  // of the pyramid that is read
+    tyn_uint groups; // of partial sums: tiles
+    float margin;    // standard errors that a change must have to be made
+    float noise;     // what of the samples' variance is taken for noise, 1 or more
+};
+TYN_ASSERT_SIZE(refine_args, 44);
+
+// Over the cells of a tile, each a sum over channels of squares times refine_weight over the mean radiance.
+struct refine_sums {
+    float cells;
+    float confirmed; // change of three parts times residual of the fourth
+    float doubt;     // its variance by the samples' noise
+    float change;    // change squared
+    float residual;  // residual of a part squared: pop's error and noise
+    float noise;     // variance of a part
+    float excess;    // (residual - noise) squared
+    float spread;    // variance of the change, by leaving out parts
+};
+TYN_ASSERT_SIZE(refine_sums, 32);
+
+struct refine_totals {
+    tyn_vec3 mean; // of pop's picture
+    float share;   // of the change that is confirmed
+};
+TYN_ASSERT_SIZE(refine_totals, 16);
+
+#endif

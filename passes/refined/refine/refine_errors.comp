@@ -1,0 +1,37 @@
+// refine_errors.comp -- how far pop and the refined picture are off, in tiles: mean squares as in refine_sums. A thread a tile.
+//
+// What a part's samples differ by from a fit of the others, less their own variance, is an unbiased estimate of the fit's mean
+// square error, but for few samples a noisy one: it is weighed, by its standard error, with what is known before of pop.
+#include "refine.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+TYN_READ(0, sums, refine_sums sums[]);
+TYN_READ(1, totals, refine_totals totals);
+layout(binding = 2, rgba32f) writeonly uniform image2D errors_image;
+
+const float SMOOTH = 10.0 / float(REFINE_TILE); // tiles
+
+void main()
+{
+    const ivec2 size = ivec2((args.cells + uint(REFINE_TILE) - 1u) / uint(REFINE_TILE));
+    const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(tile, size))) {
+        return;
+    }
+    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    float excess = 0.0;
+    for (int k = 0; k < 49; k++) {
+        const ivec2 away = ivec2(k % 7, k / 7) - 3, at = tile + away;
+        if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size))) {
+            const float w = exp(-0.5 * float(away.x * away.x + away.y * away.y) / (SMOOTH * SMOOTH));
+            sum = refine_add(sum, sums[uint(at.y * size.x + at.x)], w);
+            excess += w * w * sums[uint(at.y * size.x + at.x)].excess;
+        }
+    }
+    const float n = 3.0 * sum.cells, share = totals.share; // three channels
+    const vec2 found = vec2(sum.residual - sum.noise, share * share * sum.change - 2.0 * share * sum.confirmed + sum.residual - sum.noise) / n;
+    const float before = REFINE_PRIOR * REFINE_PRIOR, trust = before * before * n * n / max(excess, 1e-30);
+    vec2 errors = (found * trust + before) / (trust + 1.0);
+    errors = max(errors, vec2(0.04 * before, max(0.04 * before, share * share * sum.spread / n)));
+    imageStore(errors_image, tile, vec4(errors, 0.0, 0.0));
+}
