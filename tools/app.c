@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,4 +173,21 @@ uint64_t text_hash(const void *data, size_t size, uint64_t seed)
         hash = (hash ^ ((const unsigned char *)data)[i]) * 0x100000001b3u;
     }
     return hash;
+}
+
+double text_fraction(const char *text, bool *percent)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text) {
+        return NAN;
+    }
+    const char *sign = end + strspn(end, " ");
+    *percent = strcmp(sign, "%") == 0;
+    if (*percent) {
+        value /= 100;
+    } else if (*end) {
+        return NAN;
+    }
+    return value > 0 && value < INFINITY ? value : NAN;
 }

@@ -43,6 +43,8 @@ double app_seconds(void); // monotonic clock
 
 // printf into a new string; NULL if out of memory.
 char *text_format(const char *format, ...) TYN_PRINTF(1, 2);
+// "5%", "5 %" or "0.05" -> 0.05; NaN: neither.
+double text_fraction(const char *text, bool *percent);
 bool text_ends_with(const char *text, const char *end); // ignores case
 // "dir/smoke.gltf" -> "smoke" (a new string)
 char *text_stem(const char *path);

@@ -28,29 +28,11 @@ bool choice_is_asked(const choice_options *options)
     return options->max_error || !isnan(options->budget_ms);
 }
 
-// "5%", "5 %" or "0.05" -> 0.05; NaN: neither.
-static double fraction(const char *text, bool *percent)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text) {
-        return NAN;
-    }
-    const char *sign = end + strspn(end, " ");
-    *percent = strcmp(sign, "%") == 0;
-    if (*percent) {
-        value /= 100;
-    } else if (*end) {
-        return NAN;
-    }
-    return value > 0 && value < INFINITY ? value : NAN;
-}
-
 // Who asks for all of the light as error means percent. False: said.
 static bool check_error(app *a, const char *text)
 {
     bool percent = false;
-    const double value = fraction(text, &percent);
+    const double value = text_fraction(text, &percent);
     if (isnan(value)) {
         app_error(a, "--max-error: '%s' is neither a share like 0.05 nor a percentage like 5%%",
                   text);
@@ -77,6 +59,11 @@ bool choice_check(app *a, const choice_options *options, const method_options *h
     if (choice_is_asked(options) && how->quality) {
         app_error(a, "--quality %s: --max-error and --budget-ms choose the settings themselves",
                   how->quality);
+        return false;
+    }
+    if (choice_is_asked(options) && how->refine) {
+        app_error(a, "--refine %s: --max-error and --budget-ms choose the samples themselves",
+                  how->refine);
         return false;
     }
     if (choice_is_asked(options) && how->spp) {
@@ -377,7 +364,7 @@ int choice_make(app *a, const choice_options *options, const method_options *how
     if (code == EXIT_DONE) {
         bool percent;
         const choose_request request = {
-            .max_error = options->max_error ? fraction(options->max_error, &percent) : NAN,
+            .max_error = options->max_error ? text_fraction(options->max_error, &percent) : NAN,
             .budget_ms = options->budget_ms,
             .no_background = view->no_background,
             .by_pixel = options->blocks && strcmp(options->blocks, "1") == 0,

@@ -13,6 +13,7 @@
 #include "sequence.h"
 #include "stats.h"
 #include "timing.h"
+#include "until.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +27,7 @@ typedef struct render_args {
     choice_options choice;
     machine_options machine;
     opt_list outputs;
-    const char *aov, *stats, *frames, *change, *exposure, *tonemap, *crop;
+    const char *aov, *stats, *frames, *change, *exposure, *tonemap, *crop, *until;
     bool no_background, full_float, resume;
     uint32_t sample_offset;
 } render_args;
@@ -54,6 +55,7 @@ typedef struct render_job {
     renderer renderer;
     first_look look;
     float exposure_ev;
+    float until;        // --until; 0: all samples
     bool find_exposure; // --exposure auto, until the first picture has one
 } render_job;
 
@@ -78,7 +80,13 @@ static int open_method(app *a, render_job *job)
 {
     const render_args *args = job->args;
     job->how.sequence = job->numbered;
+    if (job->until > 0) {
+        until_method(job->until, &job->how);
+    }
     int code = method_open(a, &job->how, &job->method);
+    if (code == EXIT_DONE && job->until > 0 && !until_check(a, &job->method.info, args->until)) {
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE && args->tonemap) {
         code = app_exit_code(
             a, tyn_settings_set(job->method.settings, "tonemap.curve", args->tonemap, &a->log),
@@ -342,6 +350,10 @@ static int render_samples(render_job *job, const tyn_scene *scene, const tyn_vie
         rest.first_sample = picture->before = before->num_samples;
         rest.num_samples -= before->num_samples;
     }
+    if (job->until > 0) {
+        return until_render(picture->a, &job->renderer, scene, &rest, job->until,
+                            job->method.info.name, &picture->tags.samples);
+    }
     job->renderer.keep = job->args->resume ? keep_picture : NULL;
     job->renderer.keep_user = picture;
     int code =
@@ -541,6 +553,12 @@ static int check_sequence(app *a, const render_args *args, const opt_list *outpu
                   args->frames);
         return EXIT_WRONG;
     }
+    if (args->until && (args->resume || s->repeat || choice_is_asked(&args->choice))) {
+        app_error(a,
+                  "--until %s goes with none of --resume, --frames N, --max-error and --budget-ms",
+                  args->until);
+        return EXIT_WRONG;
+    }
     for (uint32_t i = 0; s->numbered && i <= outputs->count; i++) {
         const char *path = i < outputs->count ? outputs->items[i] : args->stats;
         if (path && !sequence_has_number(path)) {
@@ -561,6 +579,9 @@ static int render_all(app *a, const render_args *args, const opt_list *outputs)
         !exposure_parse(args->exposure, &job.exposure_ev, &job.find_exposure)) {
         app_error(a, "--exposure: '%s' is neither a number from -64 to 64 nor 'auto'",
                   args->exposure);
+        code = EXIT_WRONG;
+    }
+    if (code == EXIT_DONE && args->until && !until_parse(a, args->until, &job.until)) {
         code = EXIT_WRONG;
     }
     if (code == EXIT_DONE && !choice_check(a, &args->choice, &args->method)) {
@@ -631,6 +652,10 @@ static const option output_table[] = {
     {0, "resume", OPT_FLAG, AT(resume), NULL,
      "of methods that sample: go on from the .exr of -o, if it is there, and keep in it what that "
      "takes (32-bit colours and sums)"},
+    {0, "until", OPT_TEXT, AT(until), "ERROR",
+     "add samples until the picture's own estimate of its error is as small, \"1%\": of pop "
+     "refined "
+     "(--refine N: N samples a pixel at most, else 4096), or of 'path'"},
     {0, "sample-offset", OPT_UINT, AT(sample_offset), "N",
      "begin with this sample of the seed: parts that 'merge' adds up to one picture", 0, 0,
      2147483647},

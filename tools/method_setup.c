@@ -2,6 +2,7 @@
 #include "method_setup.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const qualities[] = {"draft", "normal", "high", NULL};
@@ -16,6 +17,8 @@ const option method_table[METHOD_TABLE_SIZE] = {
      "set one parameter ('tyndall info --passes'); repeatable, after --quality"},
     {0, "spp", OPT_UINT, AT(spp), "N", "samples a pixel or point, of methods that sample; else 64",
      NAN, 1, 16777216},
+    {0, "refine", OPT_TEXT, AT(refine), "N|1/N",
+     "pop refined by N paths a pixel, from 1/256 on: the same as method 'refined'"},
     {0, "seed", OPT_UINT, AT(seed), "N", "of the random numbers", 0, 0, 4294967295.0},
     {0, "max-depth", OPT_UINT, AT(max_depth), "N", "longest path in scatterings; 0 = no limit", 0},
     {0, "rr-depth", OPT_UINT, AT(rr_depth), "N",
@@ -56,13 +59,67 @@ bool method_define(app *a, tyn_settings *settings, const char *define)
     return tyn_settings_set(settings, name, equals + 1, &a->log) == TYN_OK;
 }
 
+// Squares of pixels that a sample is of, and samples of each: four at least, which two halves need.
+static bool refine_parse(const char *text, uint32_t *grid, uint32_t *spp)
+{
+    char *end;
+    double n = strtod(text, &end);
+    if (*end == '/' && end[1] >= '0' && end[1] <= '9') {
+        n /= strtod(end + 1, &end);
+    }
+    if (*end || !(n >= 1.0 / 256) || !(n <= 1 << 24)) {
+        return false;
+    }
+    *grid = 1;
+    while (*grid < 16 && n * *grid * *grid < 4) {
+        *grid *= 2;
+    }
+    *spp = (uint32_t)fmax(1, round(n * *grid * *grid));
+    return true;
+}
+
+// Then what paths lose by ending in pop's field would be seen.
+static bool refine_is_long(const method_options *options)
+{
+    enum { ENDED = 64 }; // samples a pixel
+    uint32_t grid, spp;
+    return refine_parse(options->refine, &grid, &spp) && spp > ENDED * grid * grid;
+}
+
+// --refine: the method that it stands for, and its setting. NULL: said.
+static const char *method_refined(app *a, const method_options *options, char grid[16])
+{
+    uint32_t side, spp;
+    if (options->method && strcmp(options->method, "pop") && strcmp(options->method, "refined")) {
+        app_error(a, "--refine and --method %s: only pop is refined", options->method);
+    } else if (options->spp) {
+        app_error(a, "--refine %s and --spp %u: --refine says how many samples there are",
+                  options->refine, options->spp);
+    } else if (!refine_parse(options->refine, &side, &spp)) {
+        app_error(a, "--refine: '%s' is no number of samples a pixel from 1/256 on, as 2 or 1/8",
+                  options->refine);
+    } else {
+        snprintf(grid, 16, "%u", side);
+        return "refined";
+    }
+    return NULL;
+}
+
 int method_open(app *a, const method_options *options, method *m)
 {
     *m = (method){.memory_budget = (uint64_t)options->memory_budget << 20};
-    if (!method_find(a, options->method, &m->info)) {
+    char grid[16];
+    const char *name = options->refine ? method_refined(a, options, grid) : options->method;
+    if ((options->refine && !name) || !method_find(a, name, &m->info)) {
         return EXIT_WRONG;
     }
     tyn_result result = tyn_settings_create(&m->settings);
+    if (result == TYN_OK && options->refine) {
+        result = tyn_settings_set(m->settings, "refine.grid", grid, &a->log);
+        if (result == TYN_OK && (options->refine_unbiased || refine_is_long(options))) {
+            result = tyn_settings_set(m->settings, "refine.ended", "false", &a->log);
+        }
+    }
     if (result == TYN_OK && options->sequence) {
         result = tyn_settings_set(m->settings, "lattice.warm", "1", &a->log);
     }
@@ -87,7 +144,11 @@ void method_finish(method *m)
 
 void method_view(const method_options *options, tyn_view *view)
 {
+    uint32_t grid;
     view->num_samples = options->spp ? options->spp : 64;
+    if (options->refine) {
+        refine_parse(options->refine, &grid, &view->num_samples);
+    }
     view->seed = options->seed;
     view->max_depth = options->max_depth;
     view->rr_depth = options->rr_depth;

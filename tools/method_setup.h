@@ -7,12 +7,14 @@ typedef struct method_options {
     const char *method, *quality;
     opt_list defines; // pass.param=value
     uint32_t spp;     // 0: not given
+    const char *refine; // "2", "1/8": samples a pixel that pop is refined by; NULL: not asked for
+    bool refine_unbiased; // refined: paths do not end in pop's field
     uint32_t seed, max_depth, rr_depth;
     uint32_t memory_budget; // MiB; 0 = no limit
     bool sequence; // the pictures are one after another: a solve starts from the last one's
 } method_options;
 extern const option method_table[];
-enum { METHOD_TABLE_SIZE = 8 };
+enum { METHOD_TABLE_SIZE = 9 };
 
 typedef struct method {
     tyn_method_info info;

@@ -41,6 +41,17 @@ refuses 2 "--spp: '-1' is not" render a.gltf --spp -1
 refuses 2 "--spp: '1.5' is not" render a.gltf --spp 1.5
 refuses 2 "--fov: '180' is not" render a.gltf --fov=180
 refuses 2 "--fov: 'nan' is not" render a.gltf --fov nan
+refuses 2 "--refine: '0' is no number of samples a pixel" render a.gltf --refine 0
+refuses 2 "--refine: '1/0' is no number" render a.gltf --refine 1/0
+refuses 2 "--refine: 'two' is no number" render a.gltf --refine two
+refuses 2 "--refine: '1/1000' is no number" render a.gltf --refine 1/1000
+refuses 2 "--refine and --method single: only pop is refined" render a.gltf --refine 2 --method single
+refuses 2 "--refine 2 and --spp 3" render a.gltf --refine 2 --spp 3
+refuses 2 "--refine 2: --max-error and --budget-ms choose the samples" render a.gltf --refine 2 --max-error 5%
+refuses 2 "--until: '2' is neither" render a.gltf --until 2
+refuses 2 "--until: 'soon' is neither" render a.gltf --until soon
+refuses 2 "--until 1%: method 'pop' does not say how far it is off" render a.gltf --until 1% --method pop
+refuses 2 "--until 1% goes with none of" render a.gltf --until 1% --resume -o a.exr --method path
 refuses 2 "--spp needs a value" render a.gltf --spp
 refuses 2 "--quiet takes no value" render a.gltf --quiet=1
 refuses 2 "--quality: 'best' is not one of: draft, normal, high" render a.gltf --quality best
