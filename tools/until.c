@@ -18,7 +18,7 @@ bool until_parse(app *a, const char *text, float *error)
 
 void until_method(float error, method_options *how)
 {
-    static const float biased = 0.03f; // paths that end in pop's field cost up to 2 %
+    static const float biased = 0.03f; // below it the bias of paths that end in pop's field counts
     if (!how->method && !how->refine) {
         how->refine = "4096";
     }

@@ -67,7 +67,7 @@ static uint32_t depth_of(const tyn_job *job, const tyn_refine_params *params)
     enum { LEAST = 8, MOST = 64, DEEP = 6, THICK = 2 };
     const tyn_frame_scene *frame = job->frame;
     const bool can = !frame->empty && !frame->num_triangles && !tyn_is_periodic(frame);
-    if (!params->ended || !can) {
+    if (!params->ended || !can || job->view->max_depth) { // paths end where they are asked to
         return 0;
     }
     if (params->depth) {

@@ -2,7 +2,6 @@
 #include "refine.h"
 #include "shaders/common/counters.h"
 #include "passes/refine_tables.h"
-#include <string.h>
 
 static uint32_t over(uint32_t n, uint32_t of)
 {
@@ -65,8 +64,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const struct refine_args args = args_of(p);
     const refine_shapes s = shapes_of(&args);
     const uint64_t tiles = (uint64_t)s.tiles.x * s.tiles.y;
-    tyn_build_image(b, REFINE_PORT_RADIANCE, (tyn_extent){p->picture[0], p->picture[1], 1}, 1);
-    const tyn_extent pixels = {p->picture[0], p->picture[1], 1};
+    const tyn_extent pixels = {p->picture[0], p->picture[1], 1}, none = {1, 1, 1};
+    tyn_build_image(b, REFINE_PORT_RADIANCE, pixels, 1);
     tyn_build_image(b, REFINE_PORT_ERROR, pixels, 1);
     tyn_build_image(b, REFINE_PORT_BIAS, pixels, 1);
     tyn_build_image(b, REFINE_PORT_ERRORS, s.tiles, 1);
@@ -77,13 +76,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
                     planes(s.windows, REFINE_COEFFICIENTS, REFINE_COEFFICIENTS_ROW), 1);
     tyn_build_image(b, REFINE_PORT_FINAL, (tyn_extent){REFINE_FINAL * s.cells.x, s.cells.y, 1}, 1);
     const bool blended = is_blended(p, tyn_build_has(b, REFINE_PORT_NOISE));
-    tyn_build_image(b, REFINE_PORT_FITTED,
-                    blended ? (tyn_extent){p->picture[0], p->picture[1], 1} : (tyn_extent){1, 1, 1},
-                    1);
+    const tyn_extent fitted = blended ? pixels : none;
+    tyn_build_image(b, REFINE_PORT_FITTED, fitted, 1);
     tyn_build_buffer(b, REFINE_PORT_RESIDUALS,
-                     blended ? sizeof(float[2]) * (uint64_t)over(p->picture[0], 8) *
-                                   over(p->picture[1], 8)
-                             : sizeof(float[2]));
+                     sizeof(float[2]) * (uint64_t)over(fitted.x, 8) * over(fitted.y, 8));
     tyn_build_buffer(b, REFINE_PORT_TILES, tiles * REFINE_CANDIDATES * sizeof(float));
     tyn_build_buffer(b, REFINE_PORT_CHOICES, tiles * sizeof(uint32_t));
     tyn_build_buffer(b, REFINE_PORT_SUMS, tiles * sizeof(struct refine_sums));
@@ -145,9 +141,11 @@ static const tyn_param param_table[] = {
      "what of the samples' own variance must be exceeded before pixels come nearer to samples",
      NULL},
     {"ended", TYN_PARAM_BOOL, offsetof(tyn_refine_params, ended), 1, 0, 1, "",
-     "in deep media without surfaces paths end in pop's field: less noise, 1 to 2 % of bias", NULL},
+     "in deep media without surfaces paths end in pop's field: less noise, some bias", NULL},
     {"depth", TYN_PARAM_INT, offsetof(tyn_refine_params, depth), 0, 0, 1024, "scatterings",
-     "after which they do; 0: by the largest mean cosine g, 1.4 / (1 - g), 8 to 64", NULL},
+     "after which they do; 0: by the largest mean cosine g, 1.4 / (1 - g), 8 at least; above 64 "
+     "they do not",
+     NULL},
 };
 
 const tyn_pass_desc tyn_pass_refine = {

@@ -26,7 +26,7 @@
 #define REFINE_COEFFICIENTS_ROW 3
 #define REFINE_FINAL 3 // coefficients of pop, single and 1
 
-// Relative error that pop is taken to have where samples do not tell: the root mean square over the suites' scenes.
+// Relative error that pop is taken to have where samples do not tell: with it estimates are as often too large as too small.
 #define REFINE_PRIOR 0.06f
 
 struct refine_args {

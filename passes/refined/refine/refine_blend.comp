@@ -1,7 +1,6 @@
 // refine_blend.comp -- from the fit towards the samples themselves, as far as these differ by more than their noise: with many
 // samples the picture is theirs. Shrinkage after James and Stein, by tiles. A thread a pixel.
 #include "refine.glsl"
-#include "shaders/common/counters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D fitted_tex;
@@ -22,7 +21,7 @@ void main()
     const ivec2 first = ivec2(floor(place));
     const vec2 t = place - vec2(first);
     vec2 sum = vec2(0.0);
-    // Quadratic B-spline would be narrower than what the noise of 64 pixels needs: tent over 4 x 4 tiles.
+    // A tent over 4 x 4 tiles: one tile's 64 pixels are too few to tell noise from error.
     for (int k = 0; k < 16; k++) {
         const ivec2 away = ivec2(k & 3, k >> 2) - 1, at = clamp(first + away, ivec2(0), tiles - 1);
         const vec2 w = max(1.0 - abs(vec2(away) - t) / 2.0, 0.0);

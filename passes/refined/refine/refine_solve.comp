@@ -61,10 +61,9 @@ void main()
         }
     }
     if (!found) { // what lies beside a level is read with a weight of 0
-        for (uint i = 0u; i < uint(REFINE_COEFFICIENTS); i++) {
-            if (all(lessThan(place, refine_coefficient(uint(REFINE_COEFFICIENTS_ROW) + 1u)))) {
-                imageStore(coefficients_image, ivec2(place + refine_coefficient(i)), vec4(0.0));
-            }
+        const bool in_plane = all(lessThan(place, refine_coefficient(uint(REFINE_COEFFICIENTS_ROW) + 1u)));
+        for (uint i = 0u; in_plane && i < uint(REFINE_COEFFICIENTS); i++) {
+            imageStore(coefficients_image, ivec2(place + refine_coefficient(i)), vec4(0.0));
         }
         return;
     }
