@@ -54,12 +54,13 @@ uint32_t tyn_job_batch(const tyn_job *job, const char *name)
 
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
 {
-    for (uint32_t i = 0; job->made && i < TYN_NUM_OUTPUTS; i++) {
-        if (job->outputs & which & 1u << i) {
-            job->made[i] = ref;
+    if (job->outputs & which && job->made) {
+        uint32_t index = 0;
+        while ((uint32_t)which >> index != 1) {
+            index++;
         }
-    }
-    if (job->outputs & which && !job->made) {
+        job->made[index] = ref;
+    } else if (job->outputs & which) {
         tyn_graph_output(g, tyn_job_output_name(which), ref,
                          job->readback && which != TYN_OUTPUT_COMPOSITE &&
                              which != TYN_OUTPUT_LIGHT);
