@@ -142,13 +142,18 @@ void method_finish(method *m)
     tyn_settings_destroy(&m->settings);
 }
 
+uint32_t method_samples(const method_options *options, uint32_t otherwise)
+{
+    uint32_t grid, spp;
+    if (options->refine && refine_parse(options->refine, &grid, &spp)) {
+        return spp;
+    }
+    return options->spp ? options->spp : otherwise;
+}
+
 void method_view(const method_options *options, tyn_view *view)
 {
-    uint32_t grid;
-    view->num_samples = options->spp ? options->spp : 64;
-    if (options->refine) {
-        refine_parse(options->refine, &grid, &view->num_samples);
-    }
+    view->num_samples = method_samples(options, 64);
     view->seed = options->seed;
     view->max_depth = options->max_depth;
     view->rr_depth = options->rr_depth;

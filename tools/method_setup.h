@@ -5,9 +5,9 @@
 
 typedef struct method_options {
     const char *method, *quality;
-    opt_list defines; // pass.param=value
-    uint32_t spp;     // 0: not given
-    const char *refine; // "2", "1/8": samples a pixel that pop is refined by; NULL: not asked for
+    opt_list defines;     // pass.param=value
+    uint32_t spp;         // 0: not given
+    const char *refine;   // "2", "1/8": samples a pixel that pop is refined by; NULL: not asked for
     bool refine_unbiased; // refined: paths do not end in pop's field
     uint32_t seed, max_depth, rr_depth;
     uint32_t memory_budget; // MiB; 0 = no limit
@@ -32,5 +32,7 @@ void method_finish(method *m);
 // "pass.param=value" into settings. False: said.
 bool method_define(app *a, tyn_settings *settings, const char *define);
 
+// Samples that are asked for; `otherwise`: where none are.
+uint32_t method_samples(const method_options *options, uint32_t otherwise);
 // Seed, samples and depths into the view.
 void method_view(const method_options *options, tyn_view *view);

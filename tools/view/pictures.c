@@ -306,7 +306,7 @@ void pictures_retire(viewer *v, rendering *r)
 
 uint32_t pictures_samples_wanted(const viewer *v)
 {
-    return v->how.spp ? v->how.spp : 4096;
+    return method_samples(&v->how, 4096);
 }
 
 static bool moving(const viewer *v)
