@@ -36,8 +36,7 @@
 #define TYN_PATH_GLOW 32768u     // some medium emits by a grid
 #define TYN_PATH_ALBEDO 65536u   // some medium has an albedo by a grid
 #define TYN_PATH_TABLED 131072u  // some phase functions are tables
-#define TYN_PATH_ENDED                                                                             \
-    262144u // images: at their last scattering paths get the light of a field that is there
+#define TYN_PATH_ENDED 262144u   // images: paths end in a field that is given
 // Balance: the first flights of light are followed from suns and lamps.
 #define TYN_PATH_FROM_LIGHTS 1024u
 
