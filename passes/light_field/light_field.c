@@ -15,13 +15,13 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_light_field_params *p = params;
     TYN_DISPATCH(r, .kernel = p->half ? KERNEL_HALF : KERNEL_FLOAT,
-                 .cells = tyn_rec_extent(r, LIGHT_FIELD_PORT_RED));
+                 .cells = tyn_rec_extent(r, LIGHT_FIELD_PORT_RED), .args = &p->args);
 }
 
 const tyn_pass_desc tyn_pass_light_field = {
     .name = "light_field",
-    .summary = "fluence and net flux over the media's box, into a host's images",
-    .serves = "a host's images of the light field",
+    .summary = "fluence and net flux over the media's box, as images",
+    .serves = "a host's images of the light field, and paths that end in it",
     TYN_PASS_TABLES(tyn_light_field_params),
     .debug_port = LIGHT_FIELD_PORT_RED,
     .debug_meaning = "fluence of red light, W/m^2, middle slice of the media's box",

@@ -1,5 +1,5 @@
 // light_field.comp -- see light_field.h; one thread a texel; built for each format of the images, FIELD_FORMAT.
-#include "shaders/common/scene_args.h"
+#include "light_field_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 struct probe_values { // tyn_probe_result
@@ -11,13 +11,17 @@ TYN_READ(0, results, probe_values results[]);
 layout(binding = 1, FIELD_FORMAT) uniform writeonly image3D red;
 layout(binding = 2, FIELD_FORMAT) uniform writeonly image3D green;
 layout(binding = 3, FIELD_FORMAT) uniform writeonly image3D blue;
+TYN_ARGS(light_field_args args);
 
 const float LARGEST = FIELD_LARGEST; // what the format holds
 
 vec4 channel(uint i, uint c)
 {
-    vec4 found = vec4(results[i].fluence[c], results[i].flux[c], results[i].flux[3 + c], results[i].flux[6 + c]);
-    return clamp(found, vec4(-LARGEST), vec4(LARGEST));
+    vec3 flux = vec3(0.0);
+    for (uint axis = 0u; axis < 3u; axis++) {
+        flux += results[i].flux[3u * axis + c] * args.world[axis];
+    }
+    return clamp(vec4(results[i].fluence[c], flux), vec4(-LARGEST), vec4(LARGEST));
 }
 
 void main()

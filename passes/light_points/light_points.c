@@ -18,8 +18,8 @@ static void record(tyn_recorder *r, const void *params)
 
 const tyn_pass_desc tyn_pass_light_points = {
     .name = "light_points",
-    .summary = "where the texels of a host's light field are",
-    .serves = "a host's images of the light field",
+    .summary = "where the texels of a light field are",
+    .serves = "a host's images of the light field, and paths that end in it",
     TYN_PASS_TABLES(tyn_light_points_params),
     .media_only = true,
     .debug_port = LIGHT_POINTS_PORT_POINTS,

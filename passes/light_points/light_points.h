@@ -1,4 +1,4 @@
-// light_points.h -- where the texels of a host's light field are: the middles of the cells of a grid over the media's box.
+// light_points.h -- where the texels of a light field are: the middles of the cells of a grid over the media's box.
 #pragma once
 #include <tyndall/pass.h>
 #include "light_points_args.h"

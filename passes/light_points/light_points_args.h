@@ -2,6 +2,6 @@
 #include "shaders/common/shared.h"
 
 struct light_points_args {
-    tyn_uvec3 size; // texels of the host's images
+    tyn_uvec3 size; // texels
 };
 TYN_ASSERT_SIZE(light_points_args, 12);

@@ -6,8 +6,6 @@
 #include <tyndall/extend/method.h>
 #include "refine/refine.h"
 #include "refine_camera/refine_camera.h"
-#include "refine_field/refine_field.h"
-#include "refine_points/refine_points.h"
 #include <math.h>
 #include <string.h>
 
@@ -82,28 +80,21 @@ static uint32_t depth_of(const tyn_job *job, const tyn_refine_params *params)
     return worth && depth_of_cell(frame) < THICK ? (uint32_t)depth : 0;
 }
 
-// The places of the field, and pop's job with probes there.
-static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view, tyn_refine_field_params *field)
+static tyn_extent size_of_field(const tyn_job *job)
 {
-    const tyn_frame_scene *frame = base->frame;
-    const tyn_extent size = tyn_lattice_dims(frame->medium.extent, FIELD_CELLS);
-    const tyn_refine_points_params places = {
-        {size.x, size.y, size.z},
-        {frame->medium.extent[0], frame->medium.extent[1], frame->medium.extent[2]}};
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-    tyn_graph_add(g, &tyn_pass_refine_points, &places, refs);
-    memcpy(field->size, places.size, sizeof field->size);
-    for (int w = 0; w < 3; w++) {
-        for (int a = 0; a < 3; a++) {
-            field->world[w][a] = frame->m_from_world[w * 4 + a];
-        }
-    }
+    return tyn_lattice_dims(job->frame->medium.extent, FIELD_CELLS);
+}
+
+// Pop's job with probes at the places of the field.
+static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view)
+{
+    const tyn_extent size = size_of_field(base);
     *view = *base->view;
     view->points = NULL;
     view->num_points = size.x * size.y * size.z;
     view->scattered_only = true;
     base->view = view;
-    base->refs.points = refs[REFINE_POINTS_PORT_POINTS];
+    base->refs.points = tyn_add_field_points(g, base, size);
     base->outputs |= TYN_OUTPUT_PROBE;
 }
 
@@ -111,8 +102,6 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_refine_params params = params_of(job);
     const uint32_t depth = depth_of(job, &params);
-    tyn_refine_field_params field;
-    memset(&field, 0, sizeof field);
     tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}}, path[TYN_NUM_OUTPUTS] = {{0}};
     tyn_job base = *job, samples;
     tyn_view view, base_view;
@@ -120,14 +109,12 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     base.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_SINGLE |
                    (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH));
     if (depth) {
-        ask_field(g, &base, &base_view, &field);
+        ask_field(g, &base, &base_view);
     }
     tyn_job_declare(g, &base, "pop", pop);
     samples_job(job, params.grid, &view, &samples);
     if (depth) {
-        tyn_ref refs[TYN_MAX_PORTS] = {[REFINE_FIELD_PORT_RESULTS] = pop[TYN_INDEX_PROBE]};
-        tyn_graph_add(g, &tyn_pass_refine_field, &field, refs);
-        memcpy(samples.refs.field, &refs[REFINE_FIELD_PORT_RED], sizeof samples.refs.field);
+        tyn_add_field_images(g, job, size_of_field(job), pop[TYN_INDEX_PROBE], samples.refs.field);
         view.max_depth = depth;
     }
     if (params.grid > 1) {
@@ -166,8 +153,6 @@ static const char *const passes[] = {
     TYN_GATHER_PASSES(TYN_PASS_NAME),
     TYN_SURFACE_PASSES(TYN_PASS_NAME),
     TYN_FIELD_PASSES(TYN_PASS_NAME),
-    "refine_points",
-    "refine_field",
     "refine_camera",
     "path",
     "refine",

@@ -2,13 +2,9 @@
 #include <tyndall/extend/plugin.h>
 #include "refine/refine.h"
 #include "refine_camera/refine_camera.h"
-#include "refine_field/refine_field.h"
-#include "refine_points/refine_points.h"
 
 extern const tyn_method tyn_method_refined;
-static const tyn_pass_desc *const passes[] = {&tyn_pass_refine, &tyn_pass_refine_camera,
-                                              &tyn_pass_refine_field, &tyn_pass_refine_points,
-                                              NULL};
+static const tyn_pass_desc *const passes[] = {&tyn_pass_refine, &tyn_pass_refine_camera, NULL};
 static const tyn_method *const methods[] = {&tyn_method_refined, NULL};
 
 TYN_PLUGIN("refined", "pop's picture corrected by a few paths, fitted on its layers", passes,

@@ -1,4 +1,4 @@
-// light_field.c -- every value of every probe is in its place, in floats and in halves.
+// light_field.c -- every value of every probe is in its place, in floats and in halves, and fluxes are turned to the images' axes.
 #include "gpu_test.h"
 #include "passes/light_field/light_field.h"
 #include "base/half.h"
@@ -23,9 +23,12 @@ static void places(void **state)
     }
     const tyn_extent extent = {X, Y, Z};
     static const char *const names[3] = {"red", "green", "blue"};
+    // The world's x is the images' y, its y their -x.
+    static const int axes[3] = {1, 0, 2};
+    static const float signs[3] = {-1, 1, 1};
     for (uint32_t half = 0; half < 2; half++) {
         tyn_graph_begin(t->graph);
-        const tyn_light_field_params params = {half};
+        const tyn_light_field_params params = {half, {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}}};
         tyn_ref refs[LIGHT_FIELD_NUM_PORTS] = {
             tyn_graph_upload_buffer(t->graph, "results", probes, sizeof probes, 0)};
         for (int c = 0; c < 3; c++) {
@@ -42,7 +45,9 @@ static void places(void **state)
             const void *out = gpu_map(t, names[c]);
             for (int i = 0; i < 4 * N; i++) {
                 const tyn_probe_result *p = &probes[i / 4];
-                const float right = i % 4 ? p->flux[3 * (i % 4 - 1) + c] : p->fluence[c];
+                const int axis = i % 4 - 1;
+                const float right =
+                    axis < 0 ? p->fluence[c] : signs[axis] * p->flux[3 * axes[axis] + c];
                 const float found =
                     half ? tyn_half_to_float(((const uint16_t *)out)[i]) : ((const float *)out)[i];
                 assert_true(found == right);

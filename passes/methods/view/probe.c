@@ -70,22 +70,49 @@ void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
                    add_probe(g, job, in, job->refs.points, job->view->scattered_only));
 }
 
+tyn_ref tyn_add_field_points(tyn_graph *g, const tyn_job *job, tyn_extent size)
+{
+    const tyn_light_points_params params = {{size.x, size.y, size.z}};
+    tyn_ref refs[LIGHT_POINTS_NUM_PORTS] = {[LIGHT_POINTS_PORT_MEDIUM] = job->refs.medium};
+    tyn_graph_add(g, &tyn_pass_light_points, &params, refs);
+    return refs[LIGHT_POINTS_PORT_POINTS];
+}
+
+static void add_field_images(tyn_graph *g, const tyn_light_field_params *params, tyn_ref results,
+                             tyn_ref images[3])
+{
+    tyn_ref refs[LIGHT_FIELD_NUM_PORTS] = {[LIGHT_FIELD_PORT_RESULTS] = results};
+    memcpy(&refs[LIGHT_FIELD_PORT_RED], images, 3 * sizeof *images);
+    tyn_graph_add(g, &tyn_pass_light_field, params, refs);
+    memcpy(images, &refs[LIGHT_FIELD_PORT_RED], 3 * sizeof *images);
+}
+
+void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size, tyn_ref results,
+                          tyn_ref images[3])
+{
+    static const char *const names[] = {"field_red", "field_green", "field_blue"};
+    tyn_light_field_params params = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        memcpy(params.args.world[axis], job->frame->m_from_world + 4 * axis,
+               sizeof params.args.world[axis]);
+        images[axis] = tyn_graph_history_image(g, names[axis], TYN_IMAGE_3D,
+                                               VK_FORMAT_R32G32B32A32_SFLOAT, size, 1);
+    }
+    add_field_images(g, &params, results, images);
+}
+
 // A probe at every texel.
 void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
 {
     const VkExtent3D size = job->light->red->extent;
-    const tyn_light_points_params grid = {{size.width, size.height, size.depth}};
-    tyn_ref places[LIGHT_POINTS_NUM_PORTS] = {[LIGHT_POINTS_PORT_MEDIUM] = job->refs.medium};
-    tyn_graph_add(g, &tyn_pass_light_points, &grid, places);
-    const tyn_light_field_params params = {.half = job->light->red->format ==
-                                                   VK_FORMAT_R16G16B16A16_SFLOAT};
-    tyn_ref refs[LIGHT_FIELD_NUM_PORTS] = {
-        [LIGHT_FIELD_PORT_RESULTS] =
-            add_probe(g, job, in, places[LIGHT_POINTS_PORT_POINTS], !job->light->unscattered),
-        [LIGHT_FIELD_PORT_RED] = job->refs.light[0],
-        [LIGHT_FIELD_PORT_GREEN] = job->refs.light[1],
-        [LIGHT_FIELD_PORT_BLUE] = job->refs.light[2],
+    const tyn_light_field_params params = {
+        .half = job->light->red->format == VK_FORMAT_R16G16B16A16_SFLOAT,
+        .args.world = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     };
-    tyn_graph_add(g, &tyn_pass_light_field, &params, refs);
-    tyn_job_output(g, job, TYN_OUTPUT_LIGHT, refs[LIGHT_FIELD_PORT_RED]);
+    const tyn_ref points =
+        tyn_add_field_points(g, job, (tyn_extent){size.width, size.height, size.depth});
+    tyn_ref images[3];
+    memcpy(images, job->refs.light, sizeof images);
+    add_field_images(g, &params, add_probe(g, job, in, points, !job->light->unscattered), images);
+    tyn_job_output(g, job, TYN_OUTPUT_LIGHT, images[0]);
 }

@@ -47,6 +47,11 @@ TYN_API void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_in
 TYN_API void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
 // The light field at the job's points.
 TYN_API void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// Middles of `size` cells of a grid over the media's box, x fastest: for tyn_scene_refs.points.
+TYN_API tyn_ref tyn_add_field_points(tyn_graph *g, const tyn_job *job, tyn_extent size);
+// Probes' `results` at these places as images: for tyn_scene_refs.field.
+TYN_API void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size,
+                                  tyn_ref results, tyn_ref images[3]);
 // The light field in the host's images.
 TYN_API void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Where the energy goes.
