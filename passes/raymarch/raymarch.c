@@ -73,7 +73,8 @@ static tyn_extent whole_of(const tyn_raymarch_params *p)
 static bool is_sparse(const tyn_raymarch_params *p)
 {
     const tyn_extent whole = whole_of(p);
-    const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
+    const uint32_t orders = RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
+    const uint32_t dense = RAYMARCH_LAYER_DEPTH | (p->sparse_layers ? 0 : orders);
     return p->sparse && !(p->layers & dense) && !(p->noise > 0) &&
            (uint64_t)whole.x * whole.y <= RAYMARCH_REST_MAX;
 }

@@ -46,7 +46,9 @@ typedef struct tyn_raymarch_params {
     uint32_t first[2],
         end[2];      // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
     uint32_t across; // the longer side of the whole picture's window; 0: of the whole picture
-    float depth[4];  // of the host's depth: tyn_job.host_depth
+    // 1: single and multiple are interpolated where the picture is; 0: they have a ray in every pixel.
+    uint32_t sparse_layers;
+    float depth[4]; // of the host's depth: tyn_job.host_depth
 } tyn_raymarch_params;
 
 // Sets first, end and across to a window that holds every pixel from which a ray may meet the media's box. It begins where

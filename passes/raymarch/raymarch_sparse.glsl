@@ -17,10 +17,13 @@ const float SPARSE_TOLERANCE_FIRST = 0.018, SPARSE_TOLERANCE = 0.04;
 const float SPARSE_DISTANCE_TOLERANCE = 0.03;
 
 // What is kept of the ray of a node: four texels. Nodes are counted from args.first on, two pixels apart.
-const int SPARSE_RADIANCE = 0;   // radiance; a = -1 if one ray cannot stand for the pixel
+const int SPARSE_RADIANCE = 0;   // radiance; a = -1 if one ray cannot stand for the pixel, 2 if its coarse cell is interpolated
 const int SPARSE_TRANSMITTANCE = 1; // transmittance; a = 1 / distance of the surface, or 0
 const int SPARSE_SCALED = 2;         // e^-tau'; a = which shapes are met (rays_of_pixel)
-const int SPARSE_SMOOTH = 3;    // 1 if the coarse cell that begins at the node is interpolated
+const int SPARSE_SINGLE = 3;         // light that has scattered once, where a layer wants it
+
+// It is interpolated where the picture is smooth, whether it is smooth itself or not.
+#define SPARSE_HAS_SINGLE raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)
 
 // The image has no more texels than the picture, at whose size other images may have reached what the device can hold.
 ivec2 sparse_texel(ivec2 node, int k)
@@ -71,23 +74,31 @@ void march_node(ivec2 node)
     imageStore(sparse_image, sparse_texel(node, SPARSE_RADIANCE), vec4(r.radiance, simple ? 1.0 : -1.0));
     imageStore(sparse_image, sparse_texel(node, SPARSE_TRANSMITTANCE), vec4(r.transmittance, sparse_nearness(to)));
     imageStore(sparse_image, sparse_texel(node, SPARSE_SCALED), vec4(r.scaled_transmittance, float(shapes_met)));
+    if (SPARSE_HAS_SINGLE) {
+        imageStore(sparse_image, sparse_texel(node, SPARSE_SINGLE), vec4(state.single, 0.0));
+    }
 }
 
 struct sparse_ray {
-    vec3 radiance, transmittance, scaled_transmittance;
+    vec3 radiance, transmittance, scaled_transmittance, single;
 };
+
+vec3 sparse_single(ivec2 node)
+{
+    return SPARSE_HAS_SINGLE ? sparse_load(node, SPARSE_SINGLE).rgb : vec3(0.0);
+}
 
 sparse_ray sparse_ray_of(ivec2 node)
 {
     return sparse_ray(sparse_load(node, SPARSE_RADIANCE).rgb, sparse_load(node, SPARSE_TRANSMITTANCE).rgb,
-                      sparse_load(node, SPARSE_SCALED).rgb);
+                      sparse_load(node, SPARSE_SCALED).rgb, sparse_single(node));
 }
 
 // sum + weight * ray
 sparse_ray sparse_add(sparse_ray sum, float weight, sparse_ray ray)
 {
     return sparse_ray(sum.radiance + weight * ray.radiance, sum.transmittance + weight * ray.transmittance,
-                      sum.scaled_transmittance + weight * ray.scaled_transmittance);
+                      sum.scaled_transmittance + weight * ray.scaled_transmittance, sum.single + weight * ray.single);
 }
 
 // What is seen of the ray, or of a difference of rays, sum of all channels: before black, and before the radiance `behind`. A medium
@@ -97,7 +108,7 @@ vec2 sparse_seen(sparse_ray ray, vec3 behind)
     return vec2(dot(abs(ray.radiance), vec3(1.0)), dot(abs(ray.radiance + ray.transmittance * behind), vec3(1.0)));
 }
 
-const sparse_ray SPARSE_NONE = sparse_ray(vec3(0.0), vec3(0.0), vec3(0.0));
+const sparse_ray SPARSE_NONE = sparse_ray(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
 
 // The mean second difference along `way` at the nodes a (`node`) and b (`node + way`), of those whose outer node is known and lies
 // on the same surface, in the same shapes: beyond their edges the light tells nothing of the cell's. `nearness`: of a and b.
@@ -116,7 +127,7 @@ sparse_ray sparse_second_difference(ivec2 node, ivec2 way, sparse_ray a, sparse_
         vec4 transmittance = sparse_load(beyond, SPARSE_TRANSMITTANCE), scaled = sparse_load(beyond, SPARSE_SCALED);
         there = there && sparse_load(beyond, SPARSE_RADIANCE).a > 0.0 && scaled.a == shapes_met &&
                 abs(transmittance.a - onwards) <= SPARSE_DISTANCE_TOLERANCE * transmittance.a;
-        sparse_ray outer = sparse_ray(sparse_load(beyond, SPARSE_RADIANCE).rgb, transmittance.rgb, scaled.rgb);
+        sparse_ray outer = sparse_ray(sparse_load(beyond, SPARSE_RADIANCE).rgb, transmittance.rgb, scaled.rgb, sparse_single(beyond));
         sparse_ray second = sparse_add(sparse_add(outer, -2.0, i == 0 ? a : b), 1.0, i == 0 ? b : a);
         size = there ? max(size, sparse_seen(second, behind)) : size;
         sum = sparse_add(sum, there ? 1.0 : 0.0, second);
@@ -167,7 +178,7 @@ sparse_ray sparse_valid(sparse_ray cubic, sparse_ray linear)
     bvec3 off = lessThan(min(cubic.radiance, min(cubic.transmittance, cubic.scaled_transmittance)), vec3(0.0));
     off = bvec3(ivec3(off) | ivec3(greaterThan(max(cubic.transmittance, cubic.scaled_transmittance), vec3(1.0))));
     return sparse_ray(mix(cubic.radiance, linear.radiance, off), mix(cubic.transmittance, linear.transmittance, off),
-                      mix(cubic.scaled_transmittance, linear.scaled_transmittance, off));
+                      mix(cubic.scaled_transmittance, linear.scaled_transmittance, off), max(cubic.single, 0.0));
 }
 
 // Rays in the middle of the cell's first row, of its first column, and of the cell, by cubics along rows and columns. `error`:
@@ -264,16 +275,18 @@ void fill_nodes(ivec2 node)
         ivec2 pixel = sparse_pixel(node) + ivec2(i % 4, i / 4);
         smooth_cell = is_between(cell, pixel, first_surface(pixel, false));
     }
-    imageStore(sparse_image, sparse_texel(node, SPARSE_SMOOTH), vec4(smooth_cell ? 1.0 : 0.0));
     ivec2 listed[4];
     uint count = 0u;
     for (int i = 0; i < 3; i++) {
         ivec2 way = ivec2(i != 1, i != 0), at = node + way;
         if (smooth_cell) {
             float nearness = sparse_nearness_between(cell, 0.5 * vec2(way));
-            imageStore(sparse_image, sparse_texel(at, SPARSE_RADIANCE), vec4(middle[i].radiance, 1.0));
+            imageStore(sparse_image, sparse_texel(at, SPARSE_RADIANCE), vec4(middle[i].radiance, 2.0));
             imageStore(sparse_image, sparse_texel(at, SPARSE_TRANSMITTANCE), vec4(middle[i].transmittance, nearness));
             imageStore(sparse_image, sparse_texel(at, SPARSE_SCALED), vec4(middle[i].scaled_transmittance, cell.shapes_met));
+            if (SPARSE_HAS_SINGLE) {
+                imageStore(sparse_image, sparse_texel(at, SPARSE_SINGLE), vec4(middle[i].single, 0.0));
+            }
         } else if (in_window(sparse_pixel(at))) {
             listed[count++] = at;
         }
@@ -288,7 +301,7 @@ bool store_interpolated(ivec2 pixel, surface_group group, sparse_ray ray)
 {
     march_result r = march_result(ray.radiance, ray.transmittance, ray.scaled_transmittance);
     pixel_light sum = pixel_light_none();
-    add_light(sum, pixel, vec2(0.5), 1.0, group, ray_to(pixel, vec2(0.5), group), r, vec3(0.0));
+    add_light(sum, pixel, vec2(0.5), 1.0, group, ray_to(pixel, vec2(0.5), group), r, ray.single);
     store_pixel(pixel, sum, 1.0);
     return sum.met;
 }
@@ -304,7 +317,8 @@ void fill_pixels(ivec2 node)
     sparse_ray middle[3];
     float error;
     sparse_interpolate(cell, middle, error);
-    bool smooth_cell = args.spacing > 2u && sparse_load(node & ~1, SPARSE_SMOOTH).a > 0.5;
+    const ivec2 coarse_middle = node | 1; // of its coarse cell, which ends the window or has been filled
+    bool smooth_cell = args.spacing > 2u && in_window(sparse_pixel(coarse_middle)) && sparse_load(coarse_middle, SPARSE_RADIANCE).a > 1.5;
     if (!smooth_cell) {
         float tolerance = args.spacing > 2u ? SPARSE_TOLERANCE : SPARSE_TOLERANCE_FIRST;
         smooth_cell = cell.known && error <= tolerance && !sees_sun(cell);

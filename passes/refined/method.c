@@ -108,6 +108,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t read = job->outputs | tyn_job_hooks_read(job);
     base.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_SINGLE |
                    (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH));
+    base.sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
     if (depth) {
         ask_field(g, &base, &base_view);
     }

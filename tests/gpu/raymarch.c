@@ -691,6 +691,49 @@ static void host_depth_sparse(void **state)
     free(s);
 }
 
+// Light of first and of higher orders at a lower resolution, where it may be, against a ray in every pixel.
+static void layers_sparse(void **state)
+{
+    enum { SIZE = 64, N = SIZE * SIZE };
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    static const char *const names[] = {"radiance", "single", "multiple"};
+    static const double bounds[] = {0.004, 0.012, 0.003};
+    static float all[3][N][4];
+    for (uint32_t sparse = 0; sparse < 2; sparse++) {
+        make_cube(s, 2, 0.5f, 0.4f);
+        set_sun(s, 0.3f, 0.5f, -1);
+        set_camera(s, 0.2f, 1, 0.1f, 2);
+        s->camera.orthographic = 0;
+        s->camera.size[0] = s->camera.size[1] = s->params.width = s->params.height = SIZE;
+        s->params.layers = RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
+        s->params.sparse = 1;
+        s->params.sparse_layers = sparse;
+        for (int i = 0; i < 4 * 27; i++) {
+            s->inscatter.texels[i] = 0.25f;
+        }
+        run(t, s);
+        for (int k = 0; k < 3 && !sparse; k++) {
+            memcpy(all[k], pixel(t, s, names[k], 0, 0), sizeof all[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        const float(*found)[4] = (const float(*)[4])pixel(t, s, names[k], 0, 0);
+        double sum = 0, apart = 0;
+        int differ = 0;
+        for (int i = 0; i < N; i++) {
+            sum += (double)all[k][i][0];
+            apart += fabs((double)found[i][0] - (double)all[k][i][0]);
+            differ += found[i][0] != all[k][i][0];
+        }
+        print_message("%s at a lower resolution %.3f %% off; %d of %d differ\n", names[k],
+                      100 * apart / sum, differ, N);
+        assert_within(apart / sum, bounds[k], NULL);
+        assert_true(differ > N / 30); // else nothing was saved
+    }
+    free(s);
+}
+
 // The left half of the image has a surface in the middle of the box: what it sends is seen through the
 // medium in front of it, and with what that scatters forward; no light comes from behind it.
 static void surfaces(void **state)
@@ -821,6 +864,7 @@ int main(void)
         cmocka_unit_test(surfaces),
         cmocka_unit_test(host_depth),
         cmocka_unit_test(host_depth_sparse),
+        cmocka_unit_test(layers_sparse),
         cmocka_unit_test(bad_density),
         cmocka_unit_test(opaque_in_one_colour),
         cmocka_unit_test(antialias),

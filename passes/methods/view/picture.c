@@ -115,6 +115,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->layers |= read & TYN_OUTPUT_DEPTH ? RAYMARCH_LAYER_DEPTH : 0;
     params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
     params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
+    params->sparse_layers = job->sparse_layers;
     if (job->refs.depth.resource) {
         memcpy(params->depth, job->host_depth, sizeof params->depth);
     }

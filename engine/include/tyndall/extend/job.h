@@ -58,6 +58,8 @@ typedef struct tyn_job {
     bool readback;    // copy the outputs to host memory
     bool cpu_device;  // the device is a processor: it reads uniform arrays thread by thread
     bool half_view;   // COMPOSITE: the host's colour image is twice as large as the view
+    // SINGLE and MULTIPLE may be interpolated where the picture is smooth.
+    bool sparse_layers;
     // Of the host's depth: (host_depth[0] z + host_depth[1]) / (host_depth[2] z + host_depth[3]) at z = -distance along
     // the camera's `forward`, m.
     float host_depth[4];
