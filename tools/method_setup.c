@@ -78,12 +78,12 @@ static bool refine_parse(const char *text, uint32_t *grid, uint32_t *spp)
     return true;
 }
 
-// Then what paths lose by ending in pop's field would be seen.
+// Then what is taken from pop without samples would be seen.
 static bool refine_is_long(const method_options *options)
 {
-    enum { ENDED = 64 }; // samples a pixel
+    enum { LONG = 64 }; // samples a pixel
     uint32_t grid, spp;
-    return refine_parse(options->refine, &grid, &spp) && spp > ENDED * grid * grid;
+    return refine_parse(options->refine, &grid, &spp) && spp > LONG * grid * grid;
 }
 
 // --refine: the method that it stands for, and its setting. NULL: said.
@@ -108,7 +108,7 @@ static const char *method_refined(app *a, const method_options *options, char gr
 int method_open(app *a, const method_options *options, method *m)
 {
     *m = (method){.memory_budget = (uint64_t)options->memory_budget << 20};
-    char grid[16];
+    char grid[16], bias[32];
     const char *name = options->refine ? method_refined(a, options, grid) : options->method;
     if ((options->refine && !name) || !method_find(a, name, &m->info)) {
         return EXIT_WRONG;
@@ -116,8 +116,9 @@ int method_open(app *a, const method_options *options, method *m)
     tyn_result result = tyn_settings_create(&m->settings);
     if (result == TYN_OK && options->refine) {
         result = tyn_settings_set(m->settings, "refine.grid", grid, &a->log);
-        if (result == TYN_OK && (options->refine_unbiased || refine_is_long(options))) {
-            result = tyn_settings_set(m->settings, "refine.ended", "false", &a->log);
+        if (result == TYN_OK && (options->until > 0 || refine_is_long(options))) {
+            snprintf(bias, sizeof bias, "%g", (double)options->until);
+            result = tyn_settings_set(m->settings, "refine.bias", bias, &a->log);
         }
     }
     if (result == TYN_OK && options->sequence) {

@@ -5,10 +5,10 @@
 
 typedef struct method_options {
     const char *method, *quality;
-    opt_list defines;     // pass.param=value
-    uint32_t spp;         // 0: not given
-    const char *refine;   // "2", "1/8": samples a pixel that pop is refined by; NULL: not asked for
-    bool refine_unbiased; // refined: paths do not end in pop's field
+    opt_list defines;   // pass.param=value
+    uint32_t spp;       // 0: not given
+    const char *refine; // "2", "1/8": samples a pixel that pop is refined by; NULL: not asked for
+    float until;        // relative error that is asked for; 0: none
     uint32_t seed, max_depth, rr_depth;
     uint32_t memory_budget; // MiB; 0 = no limit
     bool sequence; // the pictures are one after another: a solve starts from the last one's

@@ -18,11 +18,10 @@ bool until_parse(app *a, const char *text, float *error)
 
 void until_method(float error, method_options *how)
 {
-    static const float biased = 0.03f; // below it the bias of paths that end in pop's field counts
     if (!how->method && !how->refine) {
         how->refine = "4096";
     }
-    how->refine_unbiased = error < biased;
+    how->until = error;
 }
 
 bool until_check(app *a, const tyn_method_info *info, const char *text)

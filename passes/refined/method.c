@@ -9,7 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { FIELD_CELLS = 32 }; // along the longest side, of the field in which paths end
+enum { FIELD_CELLS = 32 };             // along the longest side, of the field in which paths end
+static const float FIELD_BIAS = 0.03f; // of such paths
 
 static tyn_refine_params params_of(const tyn_job *job)
 {
@@ -35,12 +36,29 @@ static void samples_job(const tyn_job *job, int32_t grid, tyn_view *view, tyn_jo
     samples->outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
 }
 
+// Relative error of pop's picture where it is known without samples; 0: it is not. Of a medium that scatters nothing pop
+// sees all light along straight ways, of a thin one all but what has scattered twice, about half the scattering depth.
+// Nothing scattered comes from surfaces, and not all of an environment's light along exact ways.
+static float known_error(const tyn_job *job, const tyn_refine_params *params)
+{
+    static const float march = 0.005f, thin = 0.005f;
+    const tyn_frame_scene *frame = job->frame;
+    const struct env_block *env = &frame->environment;
+    const bool straight = !frame->num_triangles && !tyn_is_periodic(frame) && !job->view->max_depth;
+    const bool beams = frame->medium.mode == TYN_MEDIUM_DENSITY && !env->has_map &&
+                       !tyn_is_lit(env->radiance) && frame->lights.num_suns <= TYN_BEAM_MAX_SUNS;
+    const float depth = frame->empty ? 0 : tyn_limit_scatterings(job);
+    const float error = march + 0.5f * depth;
+    return straight && depth <= (beams ? thin : 0) && error <= params->bias ? error : 0;
+}
+
 static uint32_t batch(const tyn_job *job)
 {
+    const tyn_refine_params params = params_of(job);
     tyn_view view;
     tyn_job samples;
-    samples_job(job, params_of(job).grid, &view, &samples);
-    return tyn_job_batch(&samples, "path");
+    samples_job(job, params.grid, &view, &samples);
+    return known_error(job, &params) > 0 ? UINT32_MAX : tyn_job_batch(&samples, "path");
 }
 
 // Delta-scaled mean free paths of the densest place in a cell of the field.
@@ -65,7 +83,8 @@ static uint32_t depth_of(const tyn_job *job, const tyn_refine_params *params)
     enum { LEAST = 8, MOST = 64, DEEP = 6, THICK = 2 };
     const tyn_frame_scene *frame = job->frame;
     const bool can = !frame->empty && !frame->num_triangles && !tyn_is_periodic(frame);
-    if (!params->ended || !can || job->view->max_depth) { // paths end where they are asked to
+    if (params->bias < FIELD_BIAS || !can ||
+        job->view->max_depth) { // paths end where they are asked to
         return 0;
     }
     if (params->depth) {
@@ -98,41 +117,56 @@ static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view)
     base->outputs |= TYN_OUTPUT_PROBE;
 }
 
-static tyn_result declare(tyn_graph *g, const tyn_job *job)
+// Means of samples and their standard errors into the ports of the fit.
+static void add_samples(tyn_graph *g, const tyn_job *job, int32_t grid, uint32_t depth,
+                        tyn_ref probes, tyn_ref *fit)
 {
-    const tyn_refine_params params = params_of(job);
-    const uint32_t depth = depth_of(job, &params);
-    tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}}, path[TYN_NUM_OUTPUTS] = {{0}};
-    tyn_job base = *job, samples;
-    tyn_view view, base_view;
-    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
-    base.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_SINGLE |
-                   (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH));
-    base.sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
+    tyn_ref path[TYN_NUM_OUTPUTS] = {{0}};
+    tyn_job samples;
+    tyn_view view;
+    samples_job(job, grid, &view, &samples);
     if (depth) {
-        ask_field(g, &base, &base_view);
-    }
-    tyn_job_declare(g, &base, "pop", pop);
-    samples_job(job, params.grid, &view, &samples);
-    if (depth) {
-        tyn_add_field_images(g, job, size_of_field(job), pop[TYN_INDEX_PROBE], samples.refs.field);
+        tyn_add_field_images(g, job, size_of_field(job), probes, samples.refs.field);
         view.max_depth = depth;
     }
-    if (params.grid > 1) {
+    if (grid > 1) {
         tyn_refine_camera_params camera;
         memset(&camera, 0, sizeof camera);
-        tyn_refine_camera(&job->frame->camera, (uint32_t)params.grid, &camera.camera);
+        tyn_refine_camera(&job->frame->camera, (uint32_t)grid, &camera.camera);
         tyn_ref refs[TYN_MAX_PORTS] = {{0}};
         tyn_graph_add(g, &tyn_pass_refine_camera, &camera, refs);
         samples.refs.camera = refs[REFINE_CAMERA_PORT_CAMERA];
     }
     tyn_job_declare(g, &samples, "path", path);
+    fit[REFINE_PORT_SAMPLES] = path[TYN_INDEX_RADIANCE];
+    fit[REFINE_PORT_NOISE] = path[TYN_INDEX_ERROR];
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    tyn_refine_params params = params_of(job);
+    params.known = known_error(job, &params);
+    const bool sampled = params.known == 0;
+    const uint32_t depth = sampled ? depth_of(job, &params) : 0;
+    tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}};
+    tyn_job base = *job;
+    tyn_view base_view;
+    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
+    base.outputs = TYN_OUTPUT_RADIANCE |
+                   (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE));
+    base.outputs |= sampled ? TYN_OUTPUT_SINGLE : 0;
+    base.sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
+    if (depth) {
+        ask_field(g, &base, &base_view);
+    }
+    tyn_job_declare(g, &base, "pop", pop);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [REFINE_PORT_BASE] = pop[TYN_INDEX_RADIANCE],
         [REFINE_PORT_SINGLE] = pop[TYN_INDEX_SINGLE],
-        [REFINE_PORT_SAMPLES] = path[TYN_INDEX_RADIANCE],
-        [REFINE_PORT_NOISE] = path[TYN_INDEX_ERROR],
     };
+    if (sampled) {
+        add_samples(g, job, params.grid, depth, pop[TYN_INDEX_PROBE], refs);
+    }
     tyn_graph_add(g, &tyn_pass_refine, &params, refs);
     tyn_add_results(g, job,
                     (tyn_picture){refs[REFINE_PORT_RADIANCE], pop[TYN_INDEX_TRANSMITTANCE],

@@ -36,9 +36,10 @@ static struct refine_args args_of(const tyn_refine_params *p)
         .grid = grid,
         .margin = p->margin,
         .noise = p->noise,
+        .known = p->known,
     };
     for (int a = 0; a < 2; a++) {
-        args.samples[a] = over(p->picture[a], grid);
+        args.samples[a] = p->known > 0 ? 1 : over(p->picture[a], grid);
         args.cells[a] = over(args.samples[a], 2);
     }
     const tyn_extent tiles = shapes_of(&args).tiles;
@@ -93,14 +94,11 @@ static tyn_extent threads(const tyn_refine_params *p, uint32_t x, uint32_t y)
     return p->unfinished ? (tyn_extent){1, 1, 1} : (tyn_extent){x, y, 1};
 }
 
-static void record(tyn_recorder *r, const void *params)
+static void record_fit(tyn_recorder *r, const tyn_refine_params *p, struct refine_args args)
 {
-    const tyn_refine_params *p = params;
-    struct refine_args args = args_of(p);
     const refine_shapes s = shapes_of(&args);
     const tyn_extent cells = threads(p, s.cells.x, s.cells.y);
     const tyn_extent tiles = threads(p, s.tiles.x, s.tiles.y);
-    const tyn_extent pixels = threads(p, p->picture[0], p->picture[1]);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = cells, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_MEAN, .cells = threads(p, 256, 1), .args = &args);
     tyn_rec_clear(r, REFINE_PORT_MOMENTS); // what lies beside a level is read with a weight of 0
@@ -117,6 +115,27 @@ static void record(tyn_recorder *r, const void *params)
     TYN_DISPATCH(r, .kernel = KERNEL_COMBINE, .cells = cells, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_SHRINK, .cells = threads(p, 64, 1), .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_ERRORS, .cells = tiles, .args = &args);
+    tyn_rec_work(r, "cells", p->unfinished ? 0 : (double)s.cells.x * s.cells.y);
+}
+
+// Nothing changes.
+static void record_no_fit(tyn_recorder *r)
+{
+    tyn_rec_clear(r, REFINE_PORT_FINAL);
+    tyn_rec_clear(r, REFINE_PORT_ERRORS);
+    tyn_rec_fill(r, REFINE_PORT_TOTALS, 0);
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_refine_params *p = params;
+    const struct refine_args args = args_of(p);
+    const tyn_extent pixels = threads(p, p->picture[0], p->picture[1]);
+    if (tyn_rec_has(r, REFINE_PORT_SAMPLES)) {
+        record_fit(r, p, args);
+    } else {
+        record_no_fit(r);
+    }
     const bool blended = is_blended(p, tyn_rec_has(r, REFINE_PORT_NOISE));
     static const uint8_t into[][2] = {{REFINE_PORT_RADIANCE, REFINE_PORT_FITTED}};
     uint8_t ports_of_fit[TYN_MAX_BINDINGS];
@@ -128,7 +147,6 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = KERNEL_RESIDUAL, .cells = pixels, .args = &args);
         TYN_DISPATCH(r, .kernel = KERNEL_BLEND, .cells = pixels, .args = &args);
     }
-    tyn_rec_work(r, "cells", p->unfinished ? 0 : (double)s.cells.x * s.cells.y);
 }
 
 static const tyn_param param_table[] = {
@@ -140,8 +158,10 @@ static const tyn_param param_table[] = {
     {"noise", TYN_PARAM_FLOAT, offsetof(tyn_refine_params, noise), 1.2, 1, 100, "",
      "what of the samples' own variance must be exceeded before pixels come nearer to samples",
      NULL},
-    {"ended", TYN_PARAM_BOOL, offsetof(tyn_refine_params, ended), 1, 0, 1, "",
-     "in deep media without surfaces paths end in pop's field: less noise, some bias", NULL},
+    {"bias", TYN_PARAM_FLOAT, offsetof(tyn_refine_params, bias), 0.03, 0, 1, "of the light",
+     "that may be taken from pop: paths end in its field in deep media without surfaces (from "
+     "0.03 on), and there are none where next to nothing scatters (from 0.0075 on)",
+     NULL},
     {"depth", TYN_PARAM_INT, offsetof(tyn_refine_params, depth), 0, 0, 1024, "scatterings",
      "after which they do; 0: by the largest mean cosine g, 1.4 / (1 - g), 8 at least; above 64 "
      "they do not",

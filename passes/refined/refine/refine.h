@@ -12,17 +12,18 @@ typedef struct tyn_refine_params {
     int32_t grid;        // "refine.grid": pixels along a side of a texel of the samples
     float margin;        // "refine.margin": standard errors
     float noise;         // "refine.noise"
-    uint32_t ended;      // "refine.ended"
+    float bias;          // "refine.bias"
     int32_t depth;       // "refine.depth": scatterings
     uint32_t unfinished; // tyn_view.unfinished: nothing is made
     uint32_t picture[2]; // pixels
+    float known;         // without samples: relative error of pop's picture
 } tyn_refine_params;
 
 // clang-format off
 #define REFINE_PORTS(X) \
     X(REFINE, BASE, base, IN, RGBA_2D, "pop's picture: radiance W/(m^2 sr), alpha"), \
     X(REFINE, SINGLE, single, OPTIONAL, IMAGE_2D, "its single scattering, W/(m^2 sr)"), \
-    X(REFINE, SAMPLES, samples, IN, IMAGE_2D, "mean radiance of samples in squares of grid x grid pixels"), \
+    X(REFINE, SAMPLES, samples, OPTIONAL, IMAGE_2D, "mean radiance of samples in squares of grid x grid pixels"), \
     X(REFINE, NOISE, noise, OPTIONAL, IMAGE_2D, "their standard error, where grid is 1"), \
     X(REFINE, RADIANCE, radiance, OUT, RGBA_2D, "refined radiance W/(m^2 sr), alpha"), \
     X(REFINE, ERROR, error, OUT, RGBA_2D, "estimated error of the refined picture, root mean square, W/(m^2 sr)"), \

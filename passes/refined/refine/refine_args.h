@@ -38,8 +38,9 @@ struct refine_args {
     tyn_uint groups; // of partial sums: tiles
     float margin;    // standard errors that a change must have to be made
     float noise;     // what of the samples' variance is taken for noise, 1 or more
+    float known;     // relative error of pop's picture that is known without samples; 0 with them
 };
-TYN_ASSERT_SIZE(refine_args, 44);
+TYN_ASSERT_SIZE(refine_args, 48);
 
 // Over the cells of a tile, each a sum over channels of squares times refine_weight over the mean radiance.
 struct refine_sums {

@@ -95,7 +95,7 @@ static void many_samples(void **state)
     path_reference(&truth, t->dev, &scene, &view, 4 * SAMPLES);
     view.seed = 3;
     picture_render(&path, t->dev, "path", &scene, &view, NULL, SAMPLES);
-    picture_render(&refined, t->dev, "refined", &scene, &view, "refine.ended=false", SAMPLES);
+    picture_render(&refined, t->dev, "refined", &scene, &view, "refine.bias=0", SAMPLES);
     const picture_error pixels = picture_compare(&refined, &truth, 1);
     const double sum = fabs(picture_compare(&refined, &truth, 32).bias);
     assert_within(pixels.rel_l1 / pixels.noise, 1.15, NULL);

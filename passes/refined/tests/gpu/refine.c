@@ -156,6 +156,37 @@ static void nothing_new(void **state)
     }
 }
 
+// Without samples the picture stays, and its error is the known share.
+static void no_samples(void **state)
+{
+    gpu_test *t = *state;
+    const fit_case *f = &cases[2];
+    make_layers(f);
+    tyn_refine_params params;
+    tyn_pass_defaults(&tyn_pass_refine, &params);
+    params.picture[0] = f->width;
+    params.picture[1] = f->height;
+    params.known = 0.25f;
+    const tyn_extent size = {f->width, f->height, 1};
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    refs[REFINE_PORT_BASE] = gpu_image(t, "base", TYN_IMAGE_2D, size, 4, base[0]);
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_refine, &params, refs), TYN_OK);
+    static const char *const names[] = {"radiance", "error", "bias"};
+    for (int k = 0; k < 3; k++) {
+        static const int ports[] = {REFINE_PORT_RADIANCE, REFINE_PORT_ERROR, REFINE_PORT_BIAS};
+        tyn_graph_output(t->graph, names[k], refs[ports[k]], true);
+    }
+    gpu_run(t);
+    assert_memory_equal(gpu_map(t, "radiance"), base, sizeof(float[4]) * f->width * f->height);
+    for (int k = 1; k < 3; k++) {
+        const float(*error)[4] = (const float(*)[4])gpu_map(t, names[k]);
+        for (uint32_t i = 0; i < 3 * f->width * f->height; i++) {
+            assert_true(error[i / 3][i % 3] == 0.25f * base[i / 3][i % 3]);
+        }
+    }
+}
+
 // Coefficients that change across the picture.
 static void a_ramp(void **state)
 {
@@ -201,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_times_coefficients),
         cmocka_unit_test(nothing_new),
+        cmocka_unit_test(no_samples),
         cmocka_unit_test(a_ramp),
         cmocka_unit_test(noise_alone),
         cmocka_unit_test(not_finite),
