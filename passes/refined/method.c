@@ -147,6 +147,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_refine_params params = params_of(job);
     params.known = known_error(job, &params);
     const bool sampled = params.known == 0;
+    const uint32_t side = tyn_refine_side(&params), most = tyn_graph_drawn_side(g);
+    if (side > most) {
+        return TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
+                         "refine.grid=%d at %u x %u pixels needs images of %u texels along a side, "
+                         "and this device has %u: a larger grid, --refine 1 or less, needs fewer",
+                         params.grid, job->view->width, job->view->height, side, most);
+    }
     const uint32_t depth = sampled ? depth_of(job, &params) : 0;
     tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}};
     tyn_job base = *job;

@@ -21,6 +21,7 @@ near "$(value rel_l1)" 0 0 "rel_l1 of equal pictures"
 leftover=$(ls | grep -vxE 'cube.png|[ab].(exr|png|json)|out|err|cache')
 [ -z "$leftover" ] || fail "left behind: $leftover"
 refuses 2 "does not make the layer 'error'" render "$scenes/cube.gltf" -o a.exr --aov error --method pop
+refuses 2 "needs images of 60000 texels along a side, and this device has" render "$scenes/cube.gltf" --size 16000x16 --refine 4
 
 # a second run finds the pipelines of the first
 ls cache/tyndall/pipelines-* >/dev/null 2>&1 || fail "no pipeline cache was written"

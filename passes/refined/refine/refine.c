@@ -53,6 +53,23 @@ static tyn_extent planes(tyn_extent one, uint32_t count, uint32_t row)
     return (tyn_extent){one.x * row, one.y * over(count, row), 1};
 }
 
+uint32_t tyn_refine_side(const tyn_refine_params *params)
+{
+    const struct refine_args args = args_of(params);
+    const refine_shapes s = shapes_of(&args);
+    const tyn_extent all[] = {
+        planes(s.cells, REFINE_CELLS, REFINE_CELLS_ROW),
+        planes(s.pyramid, REFINE_MOMENTS, REFINE_MOMENTS_ROW),
+        planes(s.windows, REFINE_COEFFICIENTS, REFINE_COEFFICIENTS_ROW),
+    };
+    uint32_t side = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        side = all[i].x > side ? all[i].x : side;
+        side = all[i].y > side ? all[i].y : side;
+    }
+    return side;
+}
+
 // Samples of single pixels may be blended in.
 static bool is_blended(const tyn_refine_params *p, bool noise)
 {

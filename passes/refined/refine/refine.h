@@ -42,3 +42,6 @@ typedef struct tyn_refine_params {
     X(REFINE, TOTALS, totals, SCRATCH, BUFFER, "struct refine_totals")
 // clang-format on
 TYN_PASS(REFINE, refine);
+
+// Texels along the longest side of its images.
+uint32_t tyn_refine_side(const tyn_refine_params *params);
