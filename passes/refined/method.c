@@ -22,6 +22,12 @@ static tyn_refine_params params_of(const tyn_job *job)
     return params;
 }
 
+// Over a host's picture both pop and path show no surfaces nor what is behind.
+static bool shows_medium_alone(const tyn_job *job)
+{
+    return job->view->no_background || job->outputs & TYN_OUTPUT_COMPOSITE;
+}
+
 // The job of the image of samples.
 static void samples_job(const tyn_job *job, int32_t grid, tyn_view *view, tyn_job *samples)
 {
@@ -31,6 +37,7 @@ static void samples_job(const tyn_job *job, int32_t grid, tyn_view *view, tyn_jo
     memset(view->whole, 0, sizeof view->whole);
     memset(view->corner, 0, sizeof view->corner);
     view->resume = NULL;
+    view->no_background = shows_medium_alone(job);
     *samples = *job;
     samples->view = view;
     samples->outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
@@ -108,11 +115,9 @@ static tyn_extent size_of_field(const tyn_job *job)
 static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view)
 {
     const tyn_extent size = size_of_field(base);
-    *view = *base->view;
     view->points = NULL;
     view->num_points = size.x * size.y * size.z;
     view->scattered_only = true;
-    base->view = view;
     base->refs.points = tyn_add_field_points(g, base, size);
     base->outputs |= TYN_OUTPUT_PROBE;
 }
@@ -129,10 +134,11 @@ static void add_samples(tyn_graph *g, const tyn_job *job, int32_t grid, uint32_t
         tyn_add_field_images(g, job, size_of_field(job), probes, samples.refs.field);
         view.max_depth = depth;
     }
-    if (grid > 1) {
+    if (grid > 1 || job->outputs & TYN_OUTPUT_COMPOSITE) {
         tyn_refine_camera_params camera;
         memset(&camera, 0, sizeof camera);
         tyn_refine_camera(&job->frame->camera, (uint32_t)grid, &camera.camera);
+        camera.camera.background = !view.no_background;
         tyn_ref refs[TYN_MAX_PORTS] = {{0}};
         tyn_graph_add(g, &tyn_pass_refine_camera, &camera, refs);
         samples.refs.camera = refs[REFINE_CAMERA_PORT_CAMERA];
@@ -142,29 +148,55 @@ static void add_samples(tyn_graph *g, const tyn_job *job, int32_t grid, uint32_t
     fit[REFINE_PORT_NOISE] = path[TYN_INDEX_ERROR];
 }
 
-static tyn_result declare(tyn_graph *g, const tyn_job *job)
+// Pop's job: its picture, what is read of it beside, and single scattering if it is refined.
+static void base_job(const tyn_job *job, bool sampled, tyn_view *view, tyn_job *base)
 {
-    tyn_refine_params params = params_of(job);
-    params.known = known_error(job, &params);
-    const bool sampled = params.known == 0;
-    const uint32_t side = tyn_refine_side(&params), most = tyn_graph_drawn_side(g);
+    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
+    *view = *job->view;
+    view->no_background = shows_medium_alone(job);
+    *base = *job;
+    base->view = view;
+    base->outputs = TYN_OUTPUT_RADIANCE |
+                    (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE));
+    base->outputs |= sampled ? TYN_OUTPUT_SINGLE : 0;
+    base->outputs |= job->outputs & TYN_OUTPUT_COMPOSITE ? TYN_OUTPUT_TRANSMITTANCE : 0;
+    base->sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
+}
+
+// TYN_OK, or what is wrong, said.
+static tyn_result check(const tyn_graph *g, const tyn_job *job, const tyn_refine_params *params)
+{
+    const uint32_t side = tyn_refine_side(params), most = tyn_graph_drawn_side(g);
     if (side > most) {
         return TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
                          "refine.grid=%d at %u x %u pixels needs images of %u texels along a side, "
                          "and this device has %u: a larger grid, --refine 1 or less, needs fewer",
-                         params.grid, job->view->width, job->view->height, side, most);
+                         params->grid, job->view->width, job->view->height, side, most);
     }
+    if (job->refs.depth.resource) {
+        return TYN_FAULT(job->log, TYN_ERR_UNSUPPORTED,
+                         "tyn_frame.depth: paths of 'refined' do not end at a host's surfaces; "
+                         "'pop' takes depth, and 'refined' is composited without");
+    }
+    return TYN_OK;
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    tyn_refine_params params = params_of(job);
+    params.known = known_error(job, &params);
+    const tyn_result result = check(g, job, &params);
+    if (result != TYN_OK) {
+        return result;
+    }
+    const bool sampled = params.known == 0;
     const uint32_t depth = sampled ? depth_of(job, &params) : 0;
     tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}};
-    tyn_job base = *job;
-    tyn_view base_view;
-    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
-    base.outputs = TYN_OUTPUT_RADIANCE |
-                   (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE));
-    base.outputs |= sampled ? TYN_OUTPUT_SINGLE : 0;
-    base.sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
+    tyn_job base;
+    tyn_view view;
+    base_job(job, sampled, &view, &base);
     if (depth) {
-        ask_field(g, &base, &base_view);
+        ask_field(g, &base, &view);
     }
     tyn_job_declare(g, &base, "pop", pop);
     tyn_ref refs[TYN_MAX_PORTS] = {
@@ -231,7 +263,8 @@ const tyn_method tyn_method_refined = {
              .summary = "pop corrected by a few paths, fitted on its layers",
              .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
                         TYN_OUTPUT_SINGLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_BIAS |
-                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL,
+                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL |
+                        TYN_OUTPUT_COMPOSITE,
              .progressive = true,
              .traces_rays = true,
              .phases = TYN_PHASES_OF_ONE_MEDIUM,

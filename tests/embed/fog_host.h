@@ -38,3 +38,4 @@ void bad_views(void **state);
 void depth_under_matrices(void **state);
 void half_resolution(void **state);
 void depth_with_stencil(void **state);
+void refined_without_depth(void **state);

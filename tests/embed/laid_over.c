@@ -10,11 +10,13 @@
 #include <cmocka.h>
 
 #include "bound.h"
+#include "built_in.h"
 #include "fog_host.h"
 #include "numbers.h"
 #include "states.h"
 
-// What becomes of a picture of the host, four floats a pixel, with its hardware depth in that format; the caller frees it.
+// What becomes of a picture of the host, four floats a pixel, with its hardware depth in that format, or without (`deep` NULL); the
+// caller frees it.
 static float *lay_over(fixture *f, tyn_context *ctx, tyn_frame frame, const host_buffer *up,
                        const host_buffer *deep, VkFormat depth_format)
 {
@@ -31,10 +33,12 @@ static float *lay_over(fixture *f, tyn_context *ctx, tyn_frame frame, const host
     host_transition(&f->host, frame.cmd, &color, copy_target);
     host_transition(&f->host, frame.cmd, &depth, copy_target);
     host_upload(&f->host, frame.cmd, up, &color);
-    host_upload(&f->host, frame.cmd, deep, &depth);
+    if (deep) {
+        host_upload(&f->host, frame.cmd, deep, &depth);
+    }
     const tyn_image lent_color = host_lend(&color, copy_source),
                     lent_depth = host_lend(&depth, sampled);
-    frame.color = &lent_color, frame.depth = &lent_depth;
+    frame.color = &lent_color, frame.depth = deep ? &lent_depth : NULL;
     assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_OK);
     assert_int_equal(tyn_context_record(ctx, &frame), TYN_OK);
     host_download(&f->host, frame.cmd, &color, &down);
@@ -271,4 +275,72 @@ void depth_with_stencil(void **state)
     tyn_context_destroy(&ctx);
     tyn_scene_finish(&scene);
     assert_int_equal(f->lines, 0);
+}
+
+static void refuse_depth(fixture *f, tyn_context *ctx, const tyn_scene *scene)
+{
+    const VkExtent3D size = {WIDTH, HEIGHT, 1};
+    host_image color =
+        host_image_new(&f->host, VK_FORMAT_R32G32B32A32_SFLOAT, size, VK_IMAGE_USAGE_STORAGE_BIT);
+    host_image depth =
+        host_image_new(&f->host, VK_FORMAT_D32_SFLOAT, size, VK_IMAGE_USAGE_SAMPLED_BIT);
+    const tyn_image lent_color = host_lend(&color, general),
+                    lent_depth = host_lend(&depth, sampled);
+    const tyn_view view = make_view(TYN_OUTPUT_COMPOSITE);
+    tyn_frame frame = {.struct_size = sizeof frame,
+                       .scene = scene,
+                       .view = &view,
+                       .color = &lent_color,
+                       .depth = &lent_depth};
+    set_view_to_clip(&frame, &view.camera, (float)WIDTH / HEIGHT, REVERSED_INFINITE);
+    assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_ERR_UNSUPPORTED);
+    assert_int_equal(f->lines, 1);
+    assert_non_null(strstr(f->last_line, "'pop' takes depth"));
+    f->lines = 0;
+    host_image_free(&f->host, &color);
+    host_image_free(&f->host, &depth);
+}
+
+// Method refined is laid over a picture as its own picture and transmittance say, without the sky behind and with samples of larger
+// squares too. Where there is depth it is refused, as paths do not end at the host's surfaces.
+void refined_without_depth(void **state)
+{
+    fixture *f = *state;
+    if (!is_built_in("refined")) {
+        return;
+    }
+    tyn_scene scene;
+    make_scene(&scene);
+    scene.environment = (tyn_environment){.present = true, .radiance = {1, 2, 3}, .strength = 1};
+    host_buffer up = host_buffer_new(&f->host, PIXELS * 16);
+    for (int i = 0; i < 4 * PIXELS; i++) {
+        ((float *)up.data)[i] = 0.5f;
+    }
+    static const char *const grids[] = {"1", "2"};
+    for (int k = 0; k < 2; k++) {
+        tyn_context *ctx = new_context(f, "refined");
+        assert_int_equal(tyn_context_set(ctx, "refine.grid", grids[k]), TYN_OK);
+        tyn_view view =
+            make_view(TYN_OUTPUT_COMPOSITE | TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE);
+        view.num_samples = 16;
+        const tyn_frame frame = {.scene = &scene, .view = &view};
+        float *laid = lay_over(f, ctx, frame, &up, NULL, VK_FORMAT_D32_SFLOAT);
+        const float *light = tyn_context_output(ctx, TYN_OUTPUT_RADIANCE);
+        const float *left = tyn_context_output(ctx, TYN_OUTPUT_TRANSMITTANCE);
+        double worst = 0;
+        for (int i = 0; i < 4 * PIXELS; i++) {
+            if (i % 4 < 3) {
+                const double right = (double)light[i] + 0.5 * (double)left[i];
+                worst = maximum(worst, fabs((double)laid[i] - right));
+            }
+        }
+        assert_true(worst <= 1e-6);
+        assert_true(light[0] == 0); // no fog, and none of the sky
+        free(laid);
+        assert_int_equal(f->lines, 0);
+        refuse_depth(f, ctx, &scene);
+        tyn_context_destroy(&ctx);
+    }
+    host_buffer_free(&f->host, &up);
+    tyn_scene_finish(&scene);
 }

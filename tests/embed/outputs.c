@@ -348,6 +348,7 @@ int main(void)
         cmocka_unit_test(light),
         cmocka_unit_test(half_resolution),
         cmocka_unit_test(depth_with_stencil),
+        cmocka_unit_test(refined_without_depth),
         cmocka_unit_test(bad_images),
     };
     return run_cases(tests, set_up, tear_down);
