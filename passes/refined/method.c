@@ -19,6 +19,9 @@ static tyn_refine_params params_of(const tyn_job *job)
     params.picture[0] = job->view->width;
     params.picture[1] = job->view->height;
     params.unfinished = job->view->unfinished;
+    params.begins = job->view->first_sample == 0;
+    memcpy(params.lo, job->frame->near_lo, sizeof params.lo);
+    memcpy(params.hi, job->frame->near_hi, sizeof params.hi);
     return params;
 }
 
@@ -163,6 +166,20 @@ static void base_job(const tyn_job *job, bool sampled, tyn_view *view, tyn_job *
     base->sparse_layers = !(read & TYN_OUTPUT_SINGLE); // for the fit that is enough
 }
 
+// What is kept from picture to picture.
+static void add_kept(tyn_graph *g, const tyn_job *job, const tyn_refine_params *params,
+                     tyn_ref *refs)
+{
+    static const char *const names[] = {"refine_kept", "refine_carried"};
+    for (int i = 0; i < 2; i++) {
+        refs[REFINE_PORT_KEPT + i] = tyn_graph_history_image(
+            g, names[i], TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, tyn_refine_kept(params), 1);
+    }
+    refs[REFINE_PORT_SEEN] =
+        tyn_graph_history_buffer(g, "refine_seen", sizeof(struct camera_block), 1);
+    refs[REFINE_PORT_CAMERA] = job->refs.camera;
+}
+
 // TYN_OK, or what is wrong, said.
 static tyn_result check(const tyn_graph *g, const tyn_job *job, const tyn_refine_params *params)
 {
@@ -206,6 +223,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (sampled) {
         add_samples(g, job, params.grid, depth, pop[TYN_INDEX_PROBE], refs);
     }
+    add_kept(g, job, &params, refs);
     tyn_graph_add(g, &tyn_pass_refine, &params, refs);
     tyn_add_results(g, job,
                     (tyn_picture){refs[REFINE_PORT_RADIANCE], pop[TYN_INDEX_TRANSMITTANCE],

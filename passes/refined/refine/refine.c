@@ -37,6 +37,9 @@ static struct refine_args args_of(const tyn_refine_params *p)
         .margin = p->margin,
         .noise = p->noise,
         .known = p->known,
+        .carried = p->begins,
+        .lo = {p->lo[0], p->lo[1], p->lo[2]},
+        .hi = {p->hi[0], p->hi[1], p->hi[2]},
     };
     for (int a = 0; a < 2; a++) {
         args.samples[a] = p->known > 0 ? 1 : over(p->picture[a], grid);
@@ -51,6 +54,13 @@ static struct refine_args args_of(const tyn_refine_params *p)
 static tyn_extent planes(tyn_extent one, uint32_t count, uint32_t row)
 {
     return (tyn_extent){one.x * row, one.y * over(count, row), 1};
+}
+
+tyn_extent tyn_refine_kept(const tyn_refine_params *params)
+{
+    const struct refine_args args = args_of(params);
+    const tyn_extent one = {args.cells[0], args.cells[1], 1}, none = {1, 1, 1};
+    return params->carry ? planes(one, REFINE_PARTS, REFINE_CELLS_ROW) : none;
 }
 
 uint32_t tyn_refine_side(const tyn_refine_params *params)
@@ -100,6 +110,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
                      sizeof(float[2]) * (uint64_t)over(fitted.x, 8) * over(fitted.y, 8));
     tyn_build_buffer(b, REFINE_PORT_TILES, tiles * REFINE_CANDIDATES * sizeof(float));
     tyn_build_buffer(b, REFINE_PORT_CHOICES, tiles * sizeof(uint32_t));
+    tyn_build_buffer(b, REFINE_PORT_CHANGES, tiles * sizeof(struct refine_changes));
     tyn_build_buffer(b, REFINE_PORT_SUMS, tiles * sizeof(struct refine_sums));
     tyn_build_buffer(b, REFINE_PORT_TOTALS, sizeof(struct refine_totals));
     return TYN_OK;
@@ -118,6 +129,12 @@ static void record_fit(tyn_recorder *r, const tyn_refine_params *p, struct refin
     const tyn_extent tiles = threads(p, s.tiles.x, s.tiles.y);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = cells, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_MEAN, .cells = threads(p, 256, 1), .args = &args);
+    if (p->carry) {
+        const tyn_extent all = p->begins ? s.cells : (tyn_extent){1, 1, 1};
+        TYN_DISPATCH(r, .kernel = KERNEL_CARRY, .cells = all, .args = &args);
+        TYN_DISPATCH(r, .kernel = KERNEL_CHANGE, .cells = cells, .args = &args);
+        TYN_DISPATCH(r, .kernel = KERNEL_RENEW, .cells = cells, .args = &args);
+    }
     tyn_rec_clear(r, REFINE_PORT_MOMENTS); // what lies beside a level is read with a weight of 0
     TYN_DISPATCH(r, .kernel = KERNEL_MOMENTS, .cells = cells, .args = &args);
     for (args.level = 3; args.level + 1 < REFINE_LEVELS; args.level += 3) {
@@ -179,6 +196,8 @@ static const tyn_param param_table[] = {
      "that may be taken from pop: paths end in its field in deep media without surfaces (from "
      "0.03 on), and there are none where next to nothing scatters (from 0.0075 on)",
      NULL},
+    {"carry", TYN_PARAM_BOOL, offsetof(tyn_refine_params, carry), 1, 0, 1, "",
+     "what the samples of earlier pictures said of pop is carried over to the next", NULL},
     {"depth", TYN_PARAM_INT, offsetof(tyn_refine_params, depth), 0, 0, 1024, "scatterings",
      "after which they do; 0: by the largest mean cosine g, 1.4 / (1 - g), 8 at least; above 64 "
      "they do not",

@@ -62,10 +62,27 @@ uvec2 refine_cell(uint plane)
     return uvec2(plane % uint(REFINE_CELLS_ROW), plane / uint(REFINE_CELLS_ROW)) * args.cells;
 }
 
+// Of a plane of what is kept from frame to frame.
+uvec2 refine_kept(uint part)
+{
+    return uvec2(part % uint(REFINE_CELLS_ROW), part / uint(REFINE_CELLS_ROW)) * args.cells;
+}
+
 // 1 / radiance: squares with this weight are a share of the light, and not of each pixel's.
 vec3 refine_weight(vec3 pop, vec3 mean)
 {
     return 1.0 / (max(pop, 0.0) + 0.05 * mean + 1e-20);
+}
+
+// Light that residuals are kept in units of, as it may change from picture to picture.
+vec3 refine_unit(vec3 pop, vec3 mean)
+{
+    return 1.0 / refine_weight(pop, mean);
+}
+
+refine_changes refine_add_changes(refine_changes a, refine_changes b, float w)
+{
+    return refine_changes(a.difference + w * b.difference, a.now + w * b.now, a.before + w * b.before);
 }
 
 refine_sums refine_add(refine_sums a, refine_sums b, float w)

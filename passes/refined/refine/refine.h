@@ -17,6 +17,9 @@ typedef struct tyn_refine_params {
     uint32_t unfinished; // tyn_view.unfinished: nothing is made
     uint32_t picture[2]; // pixels
     float known;         // without samples: relative error of pop's picture
+    uint32_t carry;      // "refine.carry"
+    uint32_t begins;     // 1: the first record of a picture
+    float lo[3], hi[3];  // M, m: the box that pictures are of
 } tyn_refine_params;
 
 // clang-format off
@@ -25,6 +28,10 @@ typedef struct tyn_refine_params {
     X(REFINE, SINGLE, single, OPTIONAL, IMAGE_2D, "its single scattering, W/(m^2 sr)"), \
     X(REFINE, SAMPLES, samples, OPTIONAL, IMAGE_2D, "mean radiance of samples in squares of grid x grid pixels"), \
     X(REFINE, NOISE, noise, OPTIONAL, IMAGE_2D, "their standard error, where grid is 1"), \
+    X(REFINE, CAMERA, camera, OPTIONAL, BUFFER, "struct camera_block, with refine.carry"), \
+    X(REFINE, KEPT, kept, INOUT, RGBA_2D, "residuals by cell and part, in units of the light; A: 1"), \
+    X(REFINE, CARRIED, carried, INOUT, RGBA_2D, "those of the picture before, where they are seen now"), \
+    X(REFINE, SEEN, seen, INOUT, BUFFER, "struct camera_block of the picture before"), \
     X(REFINE, RADIANCE, radiance, OUT, RGBA_2D, "refined radiance W/(m^2 sr), alpha"), \
     X(REFINE, ERROR, error, OUT, RGBA_2D, "estimated error of the refined picture, root mean square, W/(m^2 sr)"), \
     X(REFINE, BIAS, bias, OUT, RGBA_2D, "of pop's"), \
@@ -38,10 +45,13 @@ typedef struct tyn_refine_params {
     X(REFINE, FINAL, final, SCRATCH, RGBA_2D, "coefficients of cells"), \
     X(REFINE, FITTED, fitted, SCRATCH, RGBA_2D, "the fit, where samples are blended in"), \
     X(REFINE, RESIDUALS, residuals, SCRATCH, BUFFER, "vec2 by tile of pixels: squares of differences, of noise"), \
+    X(REFINE, CHANGES, changes, SCRATCH, BUFFER, "struct refine_changes, by tile"), \
     X(REFINE, SUMS, sums, SCRATCH, BUFFER, "struct refine_sums, by group of cells"), \
     X(REFINE, TOTALS, totals, SCRATCH, BUFFER, "struct refine_totals")
 // clang-format on
 TYN_PASS(REFINE, refine);
 
+// Texels of the images KEPT and CARRIED.
+tyn_extent tyn_refine_kept(const tyn_refine_params *params);
 // Texels along the longest side of its images.
 uint32_t tyn_refine_side(const tyn_refine_params *params);

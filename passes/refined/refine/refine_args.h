@@ -33,14 +33,16 @@ struct refine_args {
     tyn_uvec2 picture; // pixels
     tyn_uvec2 samples; // pixels of the image of samples
     tyn_uvec2 cells;
-    tyn_uint grid;   // pixels along a side of one of samples
-    tyn_uint level;  // of the pyramid that is read
-    tyn_uint groups; // of partial sums: tiles
-    float margin;    // standard errors that a change must have to be made
-    float noise;     // what of the samples' variance is taken for noise, 1 or more
-    float known;     // relative error of pop's picture that is known without samples; 0 with them
+    tyn_uint grid;    // pixels along a side of one of samples
+    tyn_uint level;   // of the pyramid that is read
+    tyn_uint groups;  // of partial sums: tiles
+    float margin;     // standard errors that a change must have to be made
+    float noise;      // what of the samples' variance is taken for noise, 1 or more
+    float known;      // relative error of pop's picture that is known without samples; 0 with them
+    tyn_uint carried; // 1: a picture begins, and takes over what the last one found
+    tyn_vec3 lo, hi;  // M, m: the box that pictures are of
 };
-TYN_ASSERT_SIZE(refine_args, 48);
+TYN_ASSERT_SIZE(refine_args, 76);
 
 // Over the cells of a tile, each a sum over channels of squares times refine_weight over the mean radiance.
 struct refine_sums {
@@ -54,6 +56,15 @@ struct refine_sums {
     float spread;    // variance of the change, by leaving out parts
 };
 TYN_ASSERT_SIZE(refine_sums, 32);
+
+// Over the cells of a tile in which something was kept, each a sum over channels of squares in units of the light.
+struct refine_changes {
+    float difference; // of what samples say now and said before
+    float now;        // variances of both
+    float before;
+};
+TYN_ASSERT_SIZE(refine_changes, 12);
+#define REFINE_KNOWN 0.99f // least A of what was kept
 
 struct refine_totals {
     tyn_vec3 mean; // of pop's picture

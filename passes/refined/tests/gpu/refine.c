@@ -5,6 +5,7 @@
 #include "numbers.h"
 #include "passes/refined/refine/refine.h"
 #include "shaders/common/counters.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,14 +73,34 @@ static void make_samples(const fit_case *f, double (*factor)(double), double par
     }
 }
 
-static const float (*run(gpu_test *t, const fit_case *f))[4]
+static tyn_refine_params params_of(const fit_case *f)
 {
     tyn_refine_params params;
     tyn_pass_defaults(&tyn_pass_refine, &params);
     params.grid = (int32_t)f->grid;
     params.margin = f->margin;
+    params.carry = 0;
     params.picture[0] = f->width;
     params.picture[1] = f->height;
+    return params;
+}
+
+// What is kept from picture to picture.
+static void add_kept(gpu_test *t, const tyn_refine_params *params, tyn_ref *refs)
+{
+    static const char *const names[] = {"kept", "carried"};
+    for (int i = 0; i < 2; i++) {
+        refs[REFINE_PORT_KEPT + i] =
+            tyn_graph_history_image(t->graph, names[i], TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    tyn_refine_kept(params), 1);
+    }
+    refs[REFINE_PORT_SEEN] =
+        tyn_graph_history_buffer(t->graph, "seen", sizeof(struct camera_block), 1);
+}
+
+static const float (*run(gpu_test *t, const fit_case *f))[4]
+{
+    const tyn_refine_params params = params_of(f);
     const tyn_extent size = {f->width, f->height, 1};
     const tyn_extent sampled = {(f->width + f->grid - 1) / f->grid,
                                 (f->height + f->grid - 1) / f->grid, 1};
@@ -88,6 +109,7 @@ static const float (*run(gpu_test *t, const fit_case *f))[4]
     refs[REFINE_PORT_BASE] = gpu_image(t, "base", TYN_IMAGE_2D, size, 4, base[0]);
     refs[REFINE_PORT_SINGLE] = gpu_image(t, "single", TYN_IMAGE_2D, size, 4, single[0]);
     refs[REFINE_PORT_SAMPLES] = gpu_image(t, "samples", TYN_IMAGE_2D, sampled, 4, samples[0]);
+    add_kept(t, &params, refs);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_refine, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "radiance", refs[REFINE_PORT_RADIANCE], true);
     tyn_graph_output(t->graph, "counters", refs[REFINE_PORT_COUNTERS], true);
@@ -162,15 +184,13 @@ static void no_samples(void **state)
     gpu_test *t = *state;
     const fit_case *f = &cases[2];
     make_layers(f);
-    tyn_refine_params params;
-    tyn_pass_defaults(&tyn_pass_refine, &params);
-    params.picture[0] = f->width;
-    params.picture[1] = f->height;
+    tyn_refine_params params = params_of(f);
     params.known = 0.25f;
     const tyn_extent size = {f->width, f->height, 1};
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
     refs[REFINE_PORT_BASE] = gpu_image(t, "base", TYN_IMAGE_2D, size, 4, base[0]);
+    add_kept(t, &params, refs);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_refine, &params, refs), TYN_OK);
     static const char *const names[] = {"radiance", "error", "bias"};
     for (int k = 0; k < 3; k++) {
@@ -216,6 +236,56 @@ static void noise_alone(void **state)
     assert_true(within(worst, 0.02, NULL, "noise of 1 a sample alone, worst relative L1"));
 }
 
+// After the camera has moved by some cells, what was found lies as many cells beside; what comes into view is unknown.
+static void carried_over(void **state)
+{
+    enum { N = 64, CELLS = N / 2, ROW = 2 * CELLS, BY = 5 };
+    gpu_test *t = *state;
+    const fit_case f = {N, N, 1, 1};
+    const tyn_extent size = {N, N, 1};
+    static float found[4 * CELLS * CELLS][4];
+    make_layers(&f);
+    make_samples(&f, ramp, -0.4, 0.5);
+    struct camera_block camera = {.orthographic = 1,
+                                  .right = {1, 0, 0},
+                                  .half_width = 1,
+                                  .up = {0, 1, 0},
+                                  .half_height = 1,
+                                  .forward = {0, 0, -1},
+                                  .size = {N, N}};
+    tyn_refine_params params = params_of(&f);
+    params.carry = params.begins = 1;
+    for (int a = 0; a < 3; a++) {
+        params.lo[a] = -1;
+        params.hi[a] = 1;
+    }
+    for (int picture = 0; picture < 2; picture++) {
+        camera.origin[0] = 2.0f * BY * (float)picture / CELLS;
+        tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+        tyn_graph_begin(t->graph);
+        refs[REFINE_PORT_BASE] = gpu_image(t, "base", TYN_IMAGE_2D, size, 4, base[0]);
+        refs[REFINE_PORT_SINGLE] = gpu_image(t, "single", TYN_IMAGE_2D, size, 4, single[0]);
+        refs[REFINE_PORT_SAMPLES] = gpu_image(t, "samples", TYN_IMAGE_2D, size, 4, samples[0]);
+        refs[REFINE_PORT_CAMERA] = gpu_buffer(t, "camera", &camera, sizeof camera);
+        add_kept(t, &params, refs);
+        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_refine, &params, refs), TYN_OK);
+        tyn_graph_output(t->graph, "kept", refs[REFINE_PORT_KEPT], true);
+        tyn_graph_output(t->graph, "carried", refs[REFINE_PORT_CARRIED], true);
+        gpu_run(t);
+        if (picture == 0) {
+            memcpy(found, gpu_map(t, "kept"), sizeof found);
+        }
+    }
+    const float(*carried)[4] = (const float(*)[4])gpu_map(t, "carried");
+    for (int i = 0; i < 4 * CELLS * CELLS; i++) {
+        const int x = i % ROW % CELLS;
+        for (int c = 0; c < 4; c++) {
+            const float right = x + BY < CELLS ? found[i + BY][c] : 0;
+            assert_true(fabsf(carried[i][c] - right) <= 1e-4f);
+        }
+    }
+}
+
 static void not_finite(void **state)
 {
     make_layers(&cases[0]);
@@ -235,6 +305,7 @@ int main(void)
         cmocka_unit_test(no_samples),
         cmocka_unit_test(a_ramp),
         cmocka_unit_test(noise_alone),
+        cmocka_unit_test(carried_over),
         cmocka_unit_test(not_finite),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

@@ -1,0 +1,55 @@
+// refine_renew.comp -- what samples say of pop, and what those of earlier pictures said, weighted by their variances. A thread a cell.
+//
+// Each part takes over its own, so parts stay independent. What both differ by beyond their variances has changed since, and counts
+// as variance of what was found before.
+#include "refine.glsl"
+#include "shaders/common/scene_args.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0, rgba32f) uniform image2D cells_image;
+layout(binding = 1) uniform sampler2D carried_tex;
+layout(binding = 2, rgba32f) writeonly uniform image2D kept_image;
+TYN_READ(3, totals, refine_totals totals);
+TYN_READ(4, changes, refine_changes changes[]);
+TYN_UNIFORM(5, camera, camera_block camera);
+TYN_WRITE(6, seen, camera_block seen);
+
+const float SMOOTH = 1.25; // tiles, as windows are chosen
+// Part of the variances by which a difference must exceed them, and the largest share that is taken over.
+const float DOUBT = 0.5, MOST = 0.97;
+
+// Share that is taken over.
+float taken_over(uvec2 cell)
+{
+    const ivec2 size = ivec2((args.cells + uint(REFINE_TILE) - 1u) / uint(REFINE_TILE)), tile = ivec2(cell / uint(REFINE_TILE));
+    refine_changes sum = refine_changes(0.0, 0.0, 0.0);
+    for (int k = 0; k < 49; k++) {
+        const ivec2 away = ivec2(k % 7, k / 7) - 3, at = tile + away;
+        if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size))) {
+            const float w = exp(-0.5 * float(away.x * away.x + away.y * away.y) / (SMOOTH * SMOOTH));
+            sum = refine_add_changes(sum, changes[uint(at.y * size.x + at.x)], w);
+        }
+    }
+    const float change = max(sum.difference - (1.0 + DOUBT) * (sum.now + sum.before), 0.0);
+    return min(sum.now / max(sum.now + sum.before + change, 1e-30), MOST);
+}
+
+void main()
+{
+    const uvec2 cell = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(cell, args.cells))) {
+        return;
+    }
+    if (all(equal(cell, uvec2(0u)))) {
+        seen = camera;
+    }
+    const vec3 unit = refine_unit(imageLoad(cells_image, ivec2(refine_cell(REFINE_CELL_POP) + cell)).rgb, totals.mean);
+    const float share = taken_over(cell);
+    for (uint k = 0u; k < uint(REFINE_PARTS); k++) {
+        const ivec2 at = ivec2(refine_cell(uint(REFINE_CELL_PARTS) + k) + cell), to = ivec2(refine_kept(k) + cell);
+        const vec4 before = texelFetch(carried_tex, to, 0);
+        const vec3 residual = mix(imageLoad(cells_image, at).rgb / unit, before.rgb, before.a > REFINE_KNOWN ? share : 0.0);
+        imageStore(cells_image, at, vec4(residual * unit, 0.0));
+        imageStore(kept_image, to, vec4(residual, 1.0));
+    }
+}
