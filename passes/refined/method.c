@@ -171,12 +171,13 @@ static void add_kept(tyn_graph *g, const tyn_job *job, const tyn_refine_params *
                      tyn_ref *refs)
 {
     static const char *const names[] = {"refine_kept", "refine_carried"};
+    const uint64_t cut = job->view->cut; // another one forgets
     for (int i = 0; i < 2; i++) {
         refs[REFINE_PORT_KEPT + i] = tyn_graph_history_image(
-            g, names[i], TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, tyn_refine_kept(params), 1);
+            g, names[i], TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, tyn_refine_kept(params), cut);
     }
     refs[REFINE_PORT_SEEN] =
-        tyn_graph_history_buffer(g, "refine_seen", sizeof(struct camera_block), 1);
+        tyn_graph_history_buffer(g, "refine_seen", sizeof(struct camera_block), cut);
     refs[REFINE_PORT_CAMERA] = job->refs.camera;
 }
 

@@ -38,6 +38,7 @@ static struct refine_args args_of(const tyn_refine_params *p)
         .noise = p->noise,
         .known = p->known,
         .carried = p->begins,
+        .unfinished = p->unfinished,
         .lo = {p->lo[0], p->lo[1], p->lo[2]},
         .hi = {p->hi[0], p->hi[1], p->hi[2]},
     };

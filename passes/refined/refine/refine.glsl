@@ -68,6 +68,11 @@ uvec2 refine_kept(uint part)
     return uvec2(part % uint(REFINE_CELLS_ROW), part / uint(REFINE_CELLS_ROW)) * args.cells;
 }
 
+bool refine_finite(vec3 v)
+{
+    return !any(isnan(v)) && !any(isinf(v));
+}
+
 // 1 / radiance: squares with this weight are a share of the light, and not of each pixel's.
 vec3 refine_weight(vec3 pop, vec3 mean)
 {

@@ -40,9 +40,10 @@ struct refine_args {
     float noise;      // what of the samples' variance is taken for noise, 1 or more
     float known;      // relative error of pop's picture that is known without samples; 0 with them
     tyn_uint carried; // 1: a picture begins, and takes over what the last one found
-    tyn_vec3 lo, hi;  // M, m: the box that pictures are of
+    tyn_uint unfinished; // 1: no picture is made
+    tyn_vec3 lo, hi;     // M, m: the box that pictures are of
 };
-TYN_ASSERT_SIZE(refine_args, 76);
+TYN_ASSERT_SIZE(refine_args, 80);
 
 // Over the cells of a tile, each a sum over channels of squares times refine_weight over the mean radiance.
 struct refine_sums {

@@ -28,15 +28,20 @@ void main()
             for (uint i = 0u; i < args.grid * args.grid; i++) {
                 const uvec2 pixel = args.grid * s + uvec2(i % args.grid, i / args.grid);
                 if (all(lessThan(pixel, args.picture))) {
-                    own += texelFetch(base_tex, ivec2(pixel), 0).rgb;
-                    single += texelFetch(single_tex, ivec2(pixel), 0).rgb;
+                    const vec3 base = texelFetch(base_tex, ivec2(pixel), 0).rgb, once = texelFetch(single_tex, ivec2(pixel), 0).rgb;
+                    if (!refine_finite(base) || !refine_finite(once)) {
+                        atomicAdd(counters.non_finite, 1u);
+                        continue;
+                    }
+                    own += base;
+                    single += once;
                     count += 1.0;
                 }
             }
             pop += own;
             pixels += count;
             found = texelFetch(samples_tex, ivec2(s), 0).rgb - own / max(count, 1.0);
-            if (any(isnan(found)) || any(isinf(found))) {
+            if (!refine_finite(found)) {
                 atomicAdd(counters.non_finite, 1u);
                 found = vec3(0.0);
             }

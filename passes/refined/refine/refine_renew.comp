@@ -37,8 +37,8 @@ float taken_over(uvec2 cell)
 void main()
 {
     const uvec2 cell = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(cell, args.cells))) {
-        return;
+    if (any(greaterThanEqual(cell, args.cells)) || args.unfinished != 0u) {
+        return; // what is kept is of pictures that were made
     }
     if (all(equal(cell, uvec2(0u)))) {
         seen = camera;
@@ -48,8 +48,12 @@ void main()
     for (uint k = 0u; k < uint(REFINE_PARTS); k++) {
         const ivec2 at = ivec2(refine_cell(uint(REFINE_CELL_PARTS) + k) + cell), to = ivec2(refine_kept(k) + cell);
         const vec4 before = texelFetch(carried_tex, to, 0);
-        const vec3 residual = mix(imageLoad(cells_image, at).rgb / unit, before.rgb, before.a > REFINE_KNOWN ? share : 0.0);
-        imageStore(cells_image, at, vec4(residual * unit, 0.0));
-        imageStore(kept_image, to, vec4(residual, 1.0));
+        vec3 residual = imageLoad(cells_image, at).rgb / unit;
+        if (before.a > REFINE_KNOWN && refine_finite(before.rgb) && share >= 0.0) {
+            residual = mix(residual, before.rgb, share);
+        }
+        const bool good = refine_finite(residual);
+        imageStore(cells_image, at, vec4(good ? residual * unit : vec3(0.0), 0.0));
+        imageStore(kept_image, to, good ? vec4(residual, 1.0) : vec4(0.0));
     }
 }
