@@ -92,9 +92,9 @@ static uint32_t depth_of(const tyn_job *job, const tyn_refine_params *params)
 {
     enum { LEAST = 8, MOST = 64, DEEP = 6, THICK = 2 };
     const tyn_frame_scene *frame = job->frame;
+    const bool asked = job->view->max_depth > 0; // paths end where --max-depth says
     const bool can = !frame->empty && !frame->num_triangles && !tyn_is_periodic(frame);
-    if (params->bias < FIELD_BIAS || !can ||
-        job->view->max_depth) { // paths end where they are asked to
+    if (params->bias < FIELD_BIAS || asked || !can) {
         return 0;
     }
     if (params->depth) {

@@ -1,4 +1,4 @@
-// refine_carry.comp -- what the frame before found, where its places are seen now. A thread a cell.
+// refine_carry.comp -- the last picture's residuals, reprojected to this camera. A thread a cell.
 #include "refine.glsl"
 #include "shaders/common/camera.glsl"
 

@@ -1,5 +1,4 @@
-// refine_change.comp -- how far what samples say of pop is from what those of earlier pictures said, and how far their noise alone would
-// put it, in tiles of 8 x 8 cells. A thread a cell.
+// refine_change.comp -- squared difference of new and reprojected residuals, and both variances, in tiles of 8 x 8 cells. A thread a cell.
 #include "refine.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

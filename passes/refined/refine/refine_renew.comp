@@ -1,7 +1,7 @@
-// refine_renew.comp -- what samples say of pop, and what those of earlier pictures said, weighted by their variances. A thread a cell.
+// refine_renew.comp -- new and reprojected residuals, averaged by their variances. A thread a cell.
 //
-// Each part takes over its own, so parts stay independent. What both differ by beyond their variances has changed since, and counts
-// as variance of what was found before.
+// Parts are averaged each with its own, so they stay independent. A difference beyond both variances is a change of the light; it is
+// added to the reprojected residuals' variance.
 #include "refine.glsl"
 #include "shaders/common/scene_args.h"
 
