@@ -66,6 +66,41 @@ static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t 
                                    (tyn_extent){width, height, 1}, 1);
 }
 
+static void ignore(void *user, const char *line)
+{
+    (void)user;
+    (void)line;
+}
+
+// Surfaces make noise of their own, and in thin media a path scatters about once.
+static bool wants_guide(const tyn_job *job, const tyn_path_params *params)
+{
+    return params->guide == TYN_PATH_GUIDE_FIELD && !job->frame->empty && !params->triangles &&
+           !params->repeat && !params->tabled && params->stretch <= 1;
+}
+
+bool tyn_path_wants_guide(const tyn_job *job)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path);
+    return wants_guide(job, &params);
+}
+
+// What the paths of an image are guided by: the job's, or pop's, whose warnings do not concern this picture.
+static bool add_guide(tyn_graph *g, const tyn_job *job, tyn_ref guide[2])
+{
+    memcpy(guide, job->refs.guide, sizeof job->refs.guide);
+    if (!guide[0].resource) {
+        tyn_job pop = *job;
+        tyn_ref made[TYN_NUM_OUTPUTS];
+        pop.outputs = 0;
+        pop.guide = guide;
+        pop.warn = ignore;
+        tyn_job_declare(g, &pop, "pop", made);
+    }
+    return guide[0].resource != 0;
+}
+
 static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     tyn_path_params params;
@@ -86,6 +121,7 @@ static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
         params.ended = 1;
         memcpy(&refs[PATH_PORT_FIELD_RED], job->refs.field, sizeof job->refs.field);
     }
+    params.field = wants_guide(job, &params) && add_guide(g, job, &refs[PATH_PORT_GUIDE_SCATTERED]);
     const tyn_resume *resume = job->view->resume;
     if (resume) {
         params.resumed = job->view->first_sample == resume->num_samples;
@@ -311,6 +347,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 
 static const char *const passes[] = {
     TYN_MEDIUM_PASSES(TYN_PASS_NAME),
+    TYN_SUN_PASSES(TYN_PASS_NAME),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_NAME),
+    TYN_SKY_PASSES(TYN_PASS_NAME),
+    TYN_LAMP_PASSES(TYN_PASS_NAME),
+    TYN_CELL_PASSES(TYN_PASS_NAME),
+    TYN_LATTICE_PASSES(TYN_PASS_NAME),
+    TYN_FIELD_PASSES(TYN_PASS_NAME),
     "path",
     "path_probe",
     "path_balance",

@@ -167,7 +167,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_add_forward_tables(g, job, &view);
         tyn_add_glow(g, job, &view);
     }
-    if (solve || job->outputs & field_outputs) {
+    if (solve || job->guide || job->outputs & field_outputs) {
         tyn_lattice_params lattice;
         tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
         tyn_add_cells(g, job, lattice.shape.cells, "lattice.cells", &s);

@@ -26,6 +26,9 @@
         "over the media's box: fluence (x) and net flux along M's axes of red light that has scattered, W/m^2"), \
     X(PATH, FIELD_GREEN, field_green, OPTIONAL, IMAGE_3D, "the same"), \
     X(PATH, FIELD_BLUE, field_blue, OPTIONAL, IMAGE_3D, "the same"), \
+    X(PATH, GUIDE_SCATTERED, guide_scattered, OPTIONAL, IMAGE_3D, \
+        "likewise, mean of all channels: of light that has scattered, but not straight on"), \
+    X(PATH, GUIDE_BEAMS, guide_beams, OPTIONAL, IMAGE_3D, "the same of all other light"), \
     X(PATH, RADIANCE, radiance, OUT, RGBA_2D, "radiance W/(m^2 sr), alpha"), \
     X(PATH, ERROR, error, OUT, RGBA_2D, "standard error of the radiance, W/(m^2 sr)"), \
     X(PATH, SINGLE, single, OUT, RGBA_2D, "first-order scattering, W/(m^2 sr)"), \

@@ -14,7 +14,10 @@ layout(binding = 23) uniform sampler3D field_red_tex;
 layout(binding = 24) uniform sampler3D field_green_tex;
 layout(binding = 25) uniform sampler3D field_blue_tex;
 
-#define PATH_FIELD
+layout(binding = 26) uniform sampler3D guide_scattered_tex;
+layout(binding = 27) uniform sampler3D guide_beams_tex;
+
+#define PATH_FIELDS
 #include "shaders/path/path.glsl"
 
 // Of radiance (fluence + 3 flux . direction) / (4 pi).
@@ -25,6 +28,12 @@ vec3 path_field(vec3 at, vec3 way, media_point m)
                blue = textureLod(field_blue_tex, place, 0.0);
     const vec3 along = -vec3(dot(red.yzw, way), dot(green.yzw, way), dot(blue.yzw, way));
     return max(vec3(red.x, green.x, blue.x) + 3.0 * phase_mean_cosine(m.phase) * along, 0.0) * (0.25 / HG_PI);
+}
+
+path_guide path_guide_at(vec3 at, vec3 way, float g)
+{
+    const vec3 place = at / medium.extent;
+    return guide_of(textureLod(guide_scattered_tex, place, 0.0), textureLod(guide_beams_tex, place, 0.0), way, g);
 }
 
 // Welford's running mean and sum of squared deviations: exact 0 for equal samples, however many.

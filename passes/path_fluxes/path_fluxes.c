@@ -19,7 +19,7 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_path_params *p = params;
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
-    spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE);
+    spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_GUIDED);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
         struct path_args args = path_trace_args(p, 0, 1, p->threads);
         args.first_sample = p->first_sample + chunk * p->num_samples;

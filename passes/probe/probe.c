@@ -31,6 +31,7 @@ static void record(tyn_recorder *r, const void *params)
         .scattered_only = p->scattered_only,
         .local_lights = p->local_lights,
         .cells = tyn_rec_has(r, PROBE_PORT_CELLS),
+        .parts = p->parts,
     };
     memcpy(args.world, p->world, sizeof args.world);
     const uint32_t spec[5] = {

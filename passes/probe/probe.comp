@@ -231,6 +231,7 @@ void main()
     for (uint ch = 0; ch < 3; ch++) {
         field[ch] = args.tint[ch] * moments_at(box, p, args.channels == 1 ? 0 : ch);
     }
+    vec4 of_lattice = field[0] + field[1] + field[2];
     // Next to walls moments are not taken along lines.
     bool near_wall = walls == 1 && walls_near(walls_place_of(box, p));
     for (uint sun = 0; sun < args.num_suns; sun++) {
@@ -301,6 +302,10 @@ void main()
         for (uint ch = 0; ch < 3; ch++) {
             field[ch] += e[ch] * vec4(1.0, d);
         }
+    }
+    if (args.parts != 0) {
+        vec4 all = field[0] + field[1] + field[2];
+        field = vec4[3](of_lattice / 3.0, (all - of_lattice) / 3.0, vec4(0.0));
     }
     for (uint ch = 0; ch < 3; ch++) {
         if (any(isnan(field[ch])) || any(isinf(field[ch]))) {

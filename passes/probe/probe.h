@@ -14,6 +14,8 @@ typedef struct tyn_probe_params {
     // 1: without light that has not scattered: that of suns and ordinates, and of the mean of the sky
     // where there are ordinates, along them.
     uint32_t scattered_only;
+    // 1: in the place of the channels the means of all of them: red: of the lattice; green: of all other light; blue: 0.
+    uint32_t parts;
     float world[3][3]; // the world's axes in M: what the flux is given along
 } tyn_probe_params;
 

@@ -10,6 +10,8 @@ struct probe_args {
     tyn_uint scattered_only;
     tyn_uint local_lights; // TYN_PROBE_LOCAL_*
     tyn_uint cells;        // 1: lattice_cells is there
+    tyn_uint
+        parts; // 1: means of all channels: of the lattice in the place of red, of all else in green's
     tyn_vec3 world[3];
 };
 

@@ -4,6 +4,7 @@
 // what they say beyond pop on pop's layers (refined.md).
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
+#include <tyndall/extend/path_scene.h>
 #include "refine/refine.h"
 #include "refine_camera/refine_camera.h"
 #include <math.h>
@@ -127,12 +128,13 @@ static void ask_field(tyn_graph *g, tyn_job *base, tyn_view *view)
 
 // Means of samples and their standard errors into the ports of the fit.
 static void add_samples(tyn_graph *g, const tyn_job *job, int32_t grid, uint32_t depth,
-                        tyn_ref probes, tyn_ref *fit)
+                        tyn_ref probes, const tyn_ref guide[2], tyn_ref *fit)
 {
     tyn_ref path[TYN_NUM_OUTPUTS] = {{0}};
     tyn_job samples;
     tyn_view view;
     samples_job(job, grid, &view, &samples);
+    memcpy(samples.refs.guide, guide, sizeof samples.refs.guide);
     if (depth) {
         tyn_add_field_images(g, job, size_of_field(job), probes, samples.refs.field);
         view.max_depth = depth;
@@ -209,20 +211,21 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     const bool sampled = params.known == 0;
     const uint32_t depth = sampled ? depth_of(job, &params) : 0;
-    tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}};
+    tyn_ref pop[TYN_NUM_OUTPUTS] = {{0}}, guide[2] = {{0}};
     tyn_job base;
     tyn_view view;
     base_job(job, sampled, &view, &base);
     if (depth) {
         ask_field(g, &base, &view);
     }
+    base.guide = sampled && tyn_path_wants_guide(job) ? guide : NULL;
     tyn_job_declare(g, &base, "pop", pop);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [REFINE_PORT_BASE] = pop[TYN_INDEX_RADIANCE],
         [REFINE_PORT_SINGLE] = pop[TYN_INDEX_SINGLE],
     };
     if (sampled) {
-        add_samples(g, job, params.grid, depth, pop[TYN_INDEX_PROBE], refs);
+        add_samples(g, job, params.grid, depth, pop[TYN_INDEX_PROBE], guide, refs);
     }
     add_kept(g, job, &params, refs);
     tyn_graph_add(g, &tyn_pass_refine, &params, refs);

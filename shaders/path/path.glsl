@@ -8,14 +8,14 @@
 //    is the path's measurement over the hero's pdf, `rho` every channel's pdf over the hero's; a contribution
 //    is beta / mean(rho), the balance heuristic over channels (Miller, Georgiev and Jarosz, "A null-scattering
 //    path integral formulation of light transport", 2019), which is bounded by 3 times the best channel's.
-//  * Directions: the phase function, or light lobes with probability c_n = 0.2 0.8^n at vertex n: a mixture
-//    with the lobes of g and g^2 about the direction to one light that the path keeps. The weight p / q is at most
-//    1 / (1 - c_n); at high g it brings paths back into the light's own lobe.
+//  * Directions: the phase function times a guess of the radiance, by a field or about one light that the path keeps
+//    (path_guide.glsl).
 //  * Lamps: next-event estimation at collisions, and along each stretch equi-angular distances (Kulla and
 //    Fajardo, "Importance sampling techniques for path tracing in participating media", 2012). Each distance
 //    t gets weights of both that add up to 1; they need not be the true pdfs, so free flights in an unknown
 //    medium are weighed as in a homogeneous one.
-//  * Environment map: next-event estimation and phase sampling, balance heuristic over directions.
+//  * Environment map: next-event estimation alone. Its direction is one of candidates from the map and from the phase
+//    function, chosen by their product (path_guide.glsl).
 //  * Thin media: the first flight is drawn as if the medium were args.stretch times as dense, with weights (Carter,
 //    Cashwell and Taylor, "Monte Carlo sampling with continuously varying cross sections", 1972), or next to no path
 //    would scatter; what is seen through the medium has its transmittance instead.
@@ -31,8 +31,10 @@
 //   float path_begin_pdf(vec3 direction)  -- probes: 1/sr of the first directions of the path just begun
 //   void path_direct(vec3 direction, vec3 irradiance)  -- probes: uncollided lamps and emitters at the point itself
 //   void path_end(path_result)                       -- the path's contribution
-//   PATH_FIELD, and vec3 path_field(vec3 at, vec3 way, media_point m)  -- where paths may end in a field: what scatters there
-//     against the path's way of light that has scattered before, W/(m^2 sr)
+//   PATH_FIELDS, where paths may end in a field and be guided by one, and
+//     vec3 path_field(vec3 at, vec3 way, media_point m)  -- what scatters there against the path's way of light that has
+//       scattered before, W/(m^2 sr)
+//     path_guide path_guide_at(vec3 at, vec3 way, float g)  -- the guide there
 #ifndef TYN_PATH_GLSL
 #define TYN_PATH_GLSL
 #ifndef PATH_ENDS_AT_FIRST_SURFACE
@@ -41,7 +43,7 @@
 #include "shaders/light/env_sampling.glsl"
 #include "path_lights.glsl"
 #include "path_media.glsl"
-#include "shaders/phase/phase_directions.glsl"
+#include "path_guide.glsl"
 #include "shaders/random/rng.glsl"
 #include "path_surfaces.glsl"
 
@@ -72,13 +74,14 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
 float path_begin_pdf(vec3 direction);
 void path_direct(vec3 direction, vec3 irradiance);
 void path_end(path_result result);
-#ifdef PATH_FIELD
+#ifdef PATH_FIELDS
 vec3 path_field(vec3 at, vec3 way, media_point m);
+path_guide path_guide_at(vec3 at, vec3 way, float g);
 #endif
 
-const float PATH_MIXTURE_FIRST = 0.2, PATH_MIXTURE_LOG2_DECAY = -0.32192809; // log2 0.8
 const float PATH_ROULETTE = 0.1; // paths, and transmittance, below this weight are played for
 const float PATH_FAR = 1e30;
+const uint PATH_MAP_CANDIDATES = 4u; // directions from the map, and as many from what scatters
 
 // The stretch of a ray seen from a lamp: distances along the ray and the angles that they span.
 struct lamp_view {
@@ -416,10 +419,10 @@ vec3 path_lamp(inout path_state path, inout rng_state rng)
     return sent * path_transmittance(at, light.direction, light.distance, rng, path.steps);
 }
 
-// Axis of a path's light lobes.
-vec4 path_lobe(inout rng_state rng, float u)
+// Towards one light, by which the path is guided where there is no field: a direction (w 0) or a position (w 1); none: w -1.
+vec4 path_keep_light(inout rng_state rng, float u)
 {
-    if ((FLAGS & TYN_PATH_MIXTURE) == 0u) {
+    if ((FLAGS & TYN_PATH_GUIDED) == 0u || (FLAGS & TYN_PATH_FIELD) != 0u) {
         return vec4(0.0, 0.0, 0.0, -1.0);
     }
     if (LIGHTS == 0u && EMITTERS && ENVIRONMENT != TYN_PATH_ENV_MAP) {
@@ -469,20 +472,79 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
     return choice.emitters;
 }
 
-// What a path that leaves the media sees, with its weight; `draw_map` and `pdf_way` are of its way.
-void path_leave(inout path_result result, path_state path, vec3 weight, float draw_map, float pdf_way)
+// What a path that leaves the media sees, with its weight. Once it has scattered, a map is looked for at its vertices.
+void path_leave(inout path_result result, path_state path, vec3 weight)
 {
     if (path.depth == 0u) {
         result.transmittance = weight;
     }
-    if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
-        vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP ? environment_radiance(env, env_map_wrapped, path.way)
-                                                             : env.radiance);
-        if (ENVIRONMENT == TYN_PATH_ENV_MAP && draw_map > 0.0) {
-            sky *= pdf_way / (pdf_way + draw_map * env_pdf(env, path.way));
-        }
-        path_add(result, sky, path.depth);
+    if (ENVIRONMENT == TYN_PATH_ENV_CONSTANT) {
+        path_add(result, weight * env.radiance, path.depth);
+    } else if (ENVIRONMENT == TYN_PATH_ENV_MAP && path.depth == 0u) {
+        path_add(result, weight * environment_radiance(env, env_map_wrapped, path.way), 0u);
     }
+}
+
+// What goes on in `direction`, of light that arrives there: the phase function of each channel, or a surface's cosine; 1/sr.
+vec3 path_scatters(path_state path, media_point m, bool at_surface, vec3 normal, vec3 direction)
+{
+    if (at_surface) {
+        return vec3(max(dot(direction, normal), 0.0) * (1.0 / HG_PI));
+    }
+    return phase_between(m.phase, path.way, direction);
+}
+
+// The map's light in `direction` as the vertex scatters it, over the direction's pdf.
+vec3 path_map(path_state path, media_point m, bool at_surface, vec3 normal, inout rng_state rng, out vec3 direction)
+{
+    vec3 light = vec3(0.0);
+    float total = 0.0, there = 0.0, u = rng_float(rng_next(rng).x);
+    direction = vec3(0.0, 0.0, 1.0);
+    [[unroll]] for (uint i = 0u; i < 2u * PATH_MAP_CANDIDATES; i++) {
+        uvec4 bits = rng_next(rng);
+        vec3 d;
+        float drawn;
+        if (i < PATH_MAP_CANDIDATES) {
+            d = env_sample(env, bits, drawn);
+        } else {
+            d = at_surface ? cosine_sample(normal, rng_vec2(bits.xy))
+                           : phase_direction(path_phase(path, m), path.way, rng_vec2(bits.xy));
+            drawn = env_pdf(env, d);
+        }
+        vec3 forward = path_scatters(path, m, at_surface, normal, d);
+        drawn = float(PATH_MAP_CANDIDATES) * (drawn + (GREY ? forward.x : dot(forward, path.hero)));
+        vec3 product = forward * environment_radiance(env, env_map_wrapped, d);
+        float weight = channel_mean(product);
+        if (guide_takes(weight / max(drawn, 1e-37), total, u)) {
+            direction = d;
+            light = product;
+            there = weight;
+        }
+    }
+    return there > 0.0 ? light * (total / there) : vec3(0.0);
+}
+
+// What guides the path where it scatters; false: nothing.
+bool path_guide_of(path_state path, path_flight f, vec4 kept_light, out path_guide guide)
+{
+    // The same for all heroes: heuristics over emitters' directions add up to 1 over all of them.
+    float g = channel_mean(phase_mean_cosine(f.m.phase));
+#ifdef PATH_FIELDS
+    if ((FLAGS & TYN_PATH_FIELD) != 0u) {
+        guide = path_guide_at(f.at, path.way, g);
+        return true;
+    }
+#endif
+    if ((FLAGS & TYN_PATH_GUIDED) == 0u || kept_light.w < 0.0) {
+        return false;
+    }
+    vec3 toward = kept_light.xyz;
+    if ((FLAGS & (TYN_PATH_LAMPS | TYN_PATH_EMITTERS)) != 0u && kept_light.w > 0.0) {
+        toward -= f.at;
+        toward *= inversesqrt(max(dot(toward, toward), 1e-30));
+    }
+    guide = guide_towards(toward, path.depth - 1u, path.way, g);
+    return true;
 }
 
 // Follows samples [index, end) of one pixel or point, and what path_next gives after them.
@@ -495,9 +557,9 @@ void path_run(uint element, uint index, uint end)
     path_state path;
     path.steps = 0u;
     path_result result;
-    vec4 lobe;                // direction towards a light (w 0) or a lamp's position (w 1); none: w -1
-    float pdf_way;            // of the path's way, 1/sr
-    float draw_map, draw_emitters; // probabilities with which these were drawn at the vertex
+    vec4 kept_light;      // path_keep_light
+    float pdf_way;        // of the path's way, 1/sr
+    float draw_emitters;  // probability with which these were drawn at the vertex
 
     for (;;) {
         if (ended) {
@@ -516,14 +578,13 @@ void path_run(uint element, uint index, uint end)
             path.depth = 0u;
             path.end = PATH_FAR;
             pdf_way = 1.0;
-            draw_map = 0.0;
             draw_emitters = 0.0;
             uvec4 bits = rng_next(rng);
             if (!GREY) {
                 float u = 3.0 * rng_float(bits.z);
                 path.hero = vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
             }
-            lobe = path_lobe(rng, rng_float(bits.w));
+            kept_light = path_keep_light(rng, rng_float(bits.w));
             path_begin(rng, rng_vec2(bits.xy), path.vertex, path.way);
             if (PROBE && (LIGHTS > 0u || EMITTERS) && (FLAGS & TYN_PATH_SCATTERED) == 0u) {
                 draw_emitters = path_meet_lights(path, rng);
@@ -572,7 +633,7 @@ void path_run(uint element, uint index, uint end)
         }
 
         if (ends_thin) {
-            path_leave(result, path, through, draw_map, pdf_way);
+            path_leave(result, path, through);
         }
         if (path.steps >= args.max_steps) {
             path_count.cut++;
@@ -580,14 +641,14 @@ void path_run(uint element, uint index, uint end)
         } else if (ends_thin && !f.collided) {
             ended = true;
         } else if (!f.collided && !at_surface && !ends_thin) {
-            path_leave(result, path, path_weight(path), draw_map, pdf_way);
+            path_leave(result, path, path_weight(path));
             ended = true;
         } else if (path.depth >= args.max_depth || (at_surface && path.depth == 0u && PATH_ENDS_AT_FIRST_SURFACE)) {
             ended = true;
         } else {
             path.depth++;
-            vec3 toward = vec3(0.0); // the mixture's axis and share
-            float c = 0.0;
+            bool guided = false;
+            path_guide guide;
             if (at_surface) {
                 f.at = surface_offset(found.point, found.point.normal);
                 path.beta *= found.albedo;
@@ -606,14 +667,7 @@ void path_run(uint element, uint index, uint end)
                 if (!GREY) {
                     path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
                 }
-                if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
-                    toward = lobe.xyz;
-                    if ((FLAGS & (TYN_PATH_LAMPS | TYN_PATH_EMITTERS)) != 0u && lobe.w > 0.0) {
-                        toward -= f.at;
-                        toward *= inversesqrt(max(dot(toward, toward), 1e-30));
-                    }
-                    c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(path.depth - 1u));
-                }
+                guided = path_guide_of(path, f, kept_light, guide);
             }
             vec3 weight = path_weight(path);
             uvec4 bits = rng_next(rng);
@@ -641,22 +695,18 @@ void path_run(uint element, uint index, uint end)
                     target = from.triangle;
                     drawn = from.pdf * choice.probability;
                     pending = drawn > 0.0 ? weight * from.radiance : vec3(0.0);
-                } else if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
-                    float pdf;
-                    direction = env_sample(env, rng_next(rng), pdf);
-                    drawn = pdf * choice.probability;
-                    pending = weight * environment_radiance(env, env_map_wrapped, direction);
                 }
-                if (at_surface) {
-                    float lambert = max(dot(direction, found.point.normal), 0.0) * (1.0 / HG_PI);
-                    pending *= lambert;
-                    drawn += drawn > 0.0 ? lambert : 0.0;
+                vec3 scatters;
+                if (ENVIRONMENT == TYN_PATH_ENV_MAP && choice.index == args.num_lights) {
+                    scatters = path_map(path, f.m, at_surface, found.point.normal, rng, direction);
+                    pending = weight / choice.probability;
                 } else {
-                    vec3 forward = phase_between(f.m.phase, path.way, direction);
-                    pending *= forward;
-                    if (drawn > 0.0) {
-                        drawn += channel_mean(mixture_pdf(f.m.phase, forward, toward, direction, c));
-                    }
+                    scatters = path_scatters(path, f.m, at_surface, found.point.normal, direction);
+                }
+                pending *= scatters;
+                if (drawn > 0.0) {
+                    float forward = channel_mean(scatters);
+                    drawn += guided ? guide_pdf(guide, direction, forward) : forward;
                 }
                 pending *= drawn > 0.0 ? 1.0 / drawn : 1.0;
             }
@@ -665,7 +715,7 @@ void path_run(uint element, uint index, uint end)
                 path_add(result, pending, path.depth);
             }
 
-#ifdef PATH_FIELD
+#ifdef PATH_FIELDS
             // The last scattering: the flight that follows brings light straight from its source, the field all other.
             if ((FLAGS & TYN_PATH_ENDED) != 0u && path.depth >= args.max_depth && !at_surface) {
                 path_add(result, weight * path_field(f.at, path.way, f.m), path.depth + 1u);
@@ -678,18 +728,19 @@ void path_run(uint element, uint index, uint end)
                 d = cosine_sample(found.point.normal, rng_vec2(bits.zw));
                 pdf_way = max(dot(d, found.point.normal), 0.0) * (1.0 / HG_PI);
             } else {
-                d = mixture_sample(path_phase(path, f.m), path.way, toward, c,
-                                   rng_float(bits.y), rng_vec2(bits.zw));
-                if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP || EMITTERS) {
-                    vec3 forward = phase_between(f.m.phase, path.way, d);
-                    vec3 pdf = mixture_pdf(f.m.phase, forward, toward, d, c);
-                    float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, path.hero), 1e-30);
-                    path.beta *= forward * divide;
-                    path.rho *= GREY ? vec3(1.0) : pdf * divide;
-                    pdf_way = channel_mean(pdf);
+                phase p = path_phase(path, f.m);
+                float over_pdf = 1.0;
+                if (guided) {
+                    d = guide_direction(guide, p, path.way, rng, over_pdf);
+                } else {
+                    d = phase_direction(p, path.way, rng_vec2(bits.zw));
                 }
+                vec3 forward = phase_between(f.m.phase, path.way, d);
+                float hero = max(GREY ? forward.x : dot(forward, path.hero), 1e-30);
+                path.beta *= GREY ? vec3(over_pdf) : forward * (over_pdf / hero);
+                path.rho *= GREY ? vec3(1.0) : forward / hero;
+                pdf_way = guided ? guide_pdf(guide, d, channel_mean(forward)) : channel_mean(forward);
             }
-            draw_map = choice.environment;
             draw_emitters = choice.emitters;
             path.vertex = f.at;
             path.way = d;

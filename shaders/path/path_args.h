@@ -21,7 +21,7 @@
 
 #define TYN_PATH_REPEAT 1u       // some axis is periodic
 #define TYN_PATH_EMISSIVE 2u     // some medium emits
-#define TYN_PATH_MIXTURE 4u      // light-lobe mixture sampling
+#define TYN_PATH_GUIDED 4u       // directions are drawn by where light comes from as well
 #define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
 #define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
 #define TYN_PATH_SPHERE 128u     // the only shape is a sphere
@@ -37,6 +37,8 @@
 #define TYN_PATH_ALBEDO 65536u   // some medium has an albedo by a grid
 #define TYN_PATH_TABLED 131072u  // some phase functions are tables
 #define TYN_PATH_ENDED 262144u   // images: paths end in a field that is given
+#define TYN_PATH_FIELD 524288u   // images: a field says where light comes from; else a light does
+#define TYN_PATH_ONE_PHASE 1048576u // the phase functions of all channels are equal
 // Balance: the first flights of light are followed from suns and lamps.
 #define TYN_PATH_FROM_LIGHTS 1024u
 

@@ -11,7 +11,6 @@ const uint LIGHT_MAP = 1u, LIGHT_EMITTERS = 2u; // what may be drawn beside suns
 struct light_choice {
     uint index;         // args.num_lights: the environment map; one more: emissive triangles
     float probability;
-    float environment;  // probability of the environment map at this point
     float emitters;     // probability of the emissive triangles
 };
 
@@ -73,21 +72,23 @@ light_choice light_choose(vec3 p, float u, uint kinds)
     bool map = (kinds & LIGHT_MAP) != 0u && ENVIRONMENT == TYN_PATH_ENV_MAP;
     bool emitters = (kinds & LIGHT_EMITTERS) != 0u && (FLAGS & TYN_PATH_EMITTERS) != 0u;
     if (LIGHTS == 0u && !(map && emitters)) {
-        return light_choice(args.num_lights + (emitters ? 1u : 0u), map || emitters ? 1.0 : 0.0, map ? 1.0 : 0.0,
-                            emitters ? 1.0 : 0.0);
+        return light_choice(args.num_lights + (emitters ? 1u : 0u), map || emitters ? 1.0 : 0.0, emitters ? 1.0 : 0.0);
     }
     if (LIGHTS == 1u && !map && !emitters) {
-        return light_choice(0u, 1.0, 0.0, 0.0);
+        return light_choice(0u, 1.0, 0.0);
     }
-    // These are drawn by directions as well, so they need the smaller half of their share here.
-    float map_weight = map ? 6.2831853 * max(env.mean.x, max(env.mean.y, env.mean.z)) : 0.0;
+    float map_weight = map ? 12.5663706 * max(env.mean.x, max(env.mean.y, env.mean.z)) : 0.0;
+    // Emitters are met by directions as well, so they need the smaller half of their share here.
     float emitters_weight = emitters ? 0.5 * emitters_irradiance(p) : 0.0;
-    float total = map_weight + emitters_weight;
+    float total = emitters_weight;
     for (uint i = 0u; i < args.num_lights; i++) {
         total += light_weight(i, p);
     }
+    // It is found in no other way: a third of the draws at least, however strong a sun or near a lamp is.
+    map_weight = map ? max(map_weight, 0.5 * total) : 0.0;
+    total += map_weight;
     if (!(total > 0.0)) {
-        return light_choice(0u, 0.0, 0.0, 0.0);
+        return light_choice(0u, 0.0, 0.0);
     }
     float at = u * total;
     float weight = 0.0;
@@ -105,7 +106,7 @@ light_choice light_choose(vec3 p, float u, uint kinds)
         index = args.num_lights + (emitter ? 1u : 0u);
         weight = emitter ? emitters_weight : map_weight;
     }
-    return light_choice(index, weight / total, map_weight / total, emitters_weight / total);
+    return light_choice(index, weight / total, emitters_weight / total);
 }
 
 #endif

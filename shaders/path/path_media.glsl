@@ -28,7 +28,7 @@ vec3 grey(vec3 v)
 
 phase[3] grey(phase p[3])
 {
-    if (GREY) {
+    if (GREY || (FLAGS & TYN_PATH_ONE_PHASE) != 0u) {
         p[1] = p[0];
         p[2] = p[0];
     }

@@ -7,7 +7,7 @@
 
 // Of every tracing pass. What is not in the parameter table is set by the method.
 typedef struct tyn_path_params {
-    uint32_t mixture;     // light-lobe mixture sampling; 0 = the phase function alone
+    int32_t guide;        // TYN_PATH_GUIDE_*
     uint32_t equiangular; // equi-angular distances for lamps; 0 = free flights alone
     int32_t max_steps;    // safety cap of one path: tentative collisions and brick crossings
 
@@ -18,10 +18,11 @@ typedef struct tyn_path_params {
     uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
     uint32_t homogeneous; // one shape and no density grid
     uint32_t num_shapes;
-    uint32_t sphere; // the only shape is one
-    uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
-    uint32_t tabled; // some phase function is a table
-    uint32_t repeat; // some axis is periodic
+    uint32_t sphere;    // the only shape is one
+    uint32_t grey;      // sigma_s, sigma_a and g are equal in all channels
+    uint32_t one_phase; // g is
+    uint32_t tabled;    // some phase function is a table
+    uint32_t repeat;    // some axis is periodic
     uint32_t triangles;
     uint32_t textures; // of their materials
     uint32_t keep_few; // the device is a processor
@@ -39,6 +40,7 @@ typedef struct tyn_path_params {
     uint32_t layers;        // images: single, multiple and transmittance as well
     uint32_t opaque;        // images: a background is seen, alpha is 1
     uint32_t ended;         // images: in a field, after max_depth scatterings
+    uint32_t field;         // images: one says where light comes from
     uint32_t scattered;     // probes: without light that has not scattered
     float world[3][3];      // probes: the world's axes in M
     float lamp_power[3];    // balance: of the lamps inside, W
@@ -46,10 +48,15 @@ typedef struct tyn_path_params {
     uint32_t chunks;        // balance: dispatches of num_samples paths each; fluxes: of each thread
 } tyn_path_params;
 
+// By what directions are drawn beside the phase function.
+enum { TYN_PATH_GUIDE_NONE, TYN_PATH_GUIDE_LIGHTS, TYN_PATH_GUIDE_FIELD };
+
 enum { PATH_NUM_PARAMS = 3 };
 static const tyn_param path_params_table[PATH_NUM_PARAMS] = {
-    {"mixture", TYN_PARAM_BOOL, offsetof(tyn_path_params, mixture), 1, 0, 1, "",
-     "draw directions from a mixture with light lobes; 0: the phase function alone", NULL},
+    {"guide", TYN_PARAM_INT, offsetof(tyn_path_params, guide), TYN_PATH_GUIDE_FIELD, 0, 2, "",
+     "what directions are drawn by beside a forward phase function (g > 0.65): 0 nothing, 1 a "
+     "light, 2 pop's field in images without surfaces, else a light",
+     NULL},
     {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "",
      "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL},
     {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000,
@@ -97,7 +104,7 @@ static inline struct path_args path_trace_args(const tyn_path_params *p, uint32_
 
 static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
 {
-    // A lobe needs a light; under a constant sky every direction is as good.
+    // Under a constant sky every direction is as good.
     bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP || p->emitters;
     spec[TYN_PATH_SPEC_SHAPES] = p->num_shapes <= TYN_PATH_SHAPES_MAX ? p->num_shapes : 0;
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = p->homogeneous ? 1 : 0;
@@ -108,12 +115,14 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
     spec[TYN_PATH_SPEC_FLAGS] =
         (p->tabled ? TYN_PATH_TABLED : 0) | (p->repeat ? TYN_PATH_REPEAT : 0) |
         (p->sphere ? TYN_PATH_SPHERE : 0) | (p->emissive ? TYN_PATH_EMISSIVE : 0) |
-        (p->mixture && lights ? TYN_PATH_MIXTURE : 0) | (p->num_lamps ? TYN_PATH_LAMPS : 0) |
+        (p->field || (p->guide && lights) ? TYN_PATH_GUIDED : 0) |
+        (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
         (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
         (p->textures ? TYN_PATH_TEXTURES : 0) | (p->keep_few ? TYN_PATH_KEEP_FEW : 0) |
         (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0) | (p->glow ? TYN_PATH_GLOW : 0) |
-        (p->albedo ? TYN_PATH_ALBEDO : 0) | (p->ended ? TYN_PATH_ENDED : 0);
+        (p->albedo ? TYN_PATH_ALBEDO : 0) | (p->ended ? TYN_PATH_ENDED : 0) |
+        (p->field ? TYN_PATH_FIELD : 0) | (p->one_phase ? TYN_PATH_ONE_PHASE : 0);
 }

@@ -1,4 +1,4 @@
-// phase_directions.glsl -- directions of paths: the phase function, and its mixture with lobes about a light.
+// phase_directions.glsl -- directions that are distributed as the phase function, or as lobes about a light.
 #ifndef TYN_PHASE_DIRECTIONS_GLSL
 #define TYN_PHASE_DIRECTIONS_GLSL
 #include "phase.glsl"
@@ -45,22 +45,6 @@ vec3 light_lobes_pdf(phase p[3], vec3 light, vec3 d)
         twice[c] = phase_about_light(p[c], false);
     }
     return 0.5 * (phase_between(once, light, d) + phase_between(twice, light, d));
-}
-
-// pdf of `d` in the mixture: the phase function (value `forward`) or, with probability `c`, the lobes about `light`
-// (unit, towards the light).
-vec3 mixture_pdf(phase p[3], vec3 forward, vec3 light, vec3 d, float c)
-{
-    return mix(forward, light_lobes_pdf(p, light, d), c);
-}
-
-vec3 mixture_sample(phase p, vec3 way, vec3 light, float c, float u, vec2 v)
-{
-    bool aside = u < c;
-    if (aside) {
-        p = phase_about_light(p, u < 0.5 * c);
-    }
-    return phase_direction(p, aside ? light : way, v);
 }
 
 #endif

@@ -31,7 +31,7 @@ float phase_table_near(uint table, float one_minus_mu)
 float phase_table_sample(uint table, float u)
 {
     uint row = (table - 1u) * TYN_PHASE_NODES, at = 0u;
-    for (uint stride = TYN_PHASE_NODES / 2; stride > 0u; stride >>= 1u) {
+    [[unroll]] for (uint stride = TYN_PHASE_NODES / 2; stride > 0u; stride >>= 1u) {
         uint next = min(at + stride, uint(TYN_PHASE_NODES - 2));
         at = phase_row(row + next).z <= u ? next : at;
     }

@@ -127,8 +127,8 @@ static const sky_case cases[] = {
      .file = "data/smoke.vdb",
      .map = "data/museum.exr",
      .spp = 64,
-     .with = 0.013,
-     .without = 0.05,
+     .with = 0.01,
+     .without = 0.04,
      .flat = lobe},
 };
 enum { NUM_CASES = sizeof cases / sizeof cases[0] };

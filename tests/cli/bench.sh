@@ -8,7 +8,7 @@ cat >suite.json <<'END'
 { "name": "tiny", "size": [24, 24], "reference_spp": 64, "block": 4, "frames": 2, "timing_seconds": 0.2, "warm_seconds": 0.1,
   "max_seconds": 5, "scenes": [ { "name": "cube", "scene": "cube.gltf", "g": 0.5 } ],
   "runs": [ { "method": "pop", "sweep": { "lattice.cells": [8, 16] } }, { "method": "single" } ],
-  "baselines": [ { "name": "plain", "method": "path", "settings": { "path.mixture": 0 },
+  "baselines": [ { "name": "plain", "method": "path", "settings": { "path.guide": 0 },
                    "sweep": { "spp": [1, 4, 16] } } ] }
 END
 works bench --suite suite.json --scenes "$scenes" --report report --quiet

@@ -286,7 +286,7 @@ static void from_a_report(void **state)
                    "\"errors\": [{\"block\": 8, "
                    "\"error\": 0.05, \"n\": 0}], \"frame_ms\": {\"animated_light\": 14}, "
                    "\"nodes\": []},"
-                   "{\"method\": \"path\", \"settings\": {\"spp\": 1, \"path.mixture\": 0}, "
+                   "{\"method\": \"path\", \"settings\": {\"spp\": 1, \"path.guide\": 0}, "
                    "\"failed\": null, "
                    "\"errors\": [{\"block\": 8, "
                    "\"error\": 0.5, \"n\": 0}], \"frame_ms\": {\"animated_light\": 1}, \"nodes\": "

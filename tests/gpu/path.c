@@ -193,21 +193,21 @@ static void overlap(void **state)
     }
 }
 
-// Light lobes change the noise, not the mean.
-static void mixture(void **state)
+// A guide by a light changes the noise, not the mean.
+static void guide(void **state)
 {
     double mean[2], se[2];
     for (int i = 0; i < 2; i++) {
         path_scene s;
         path_scene_cube(&s, 4, 0, 0.9f, false);
         path_scene_sun(&s, (float[]){1, 0, 0}, (float[]){1, 1, 1});
-        s.params.mixture = (uint32_t)i;
+        s.params.guide = i;
         const float *radiance, *error;
         path_scene_render(*state, &s, 2048, &radiance, &error);
         mean[i] = image_mean(radiance, 0);
         se[i] = image_error(error, 0);
     }
-    printf("mixture: %.6f +- %.6f, plain: %.6f +- %.6f\n", mean[1], se[1], mean[0], se[0]);
+    printf("guided: %.6f +- %.6f, plain: %.6f +- %.6f\n", mean[1], se[1], mean[0], se[0]);
     assert_true(fabs(mean[1] - mean[0]) <= 3.5 * hypot(se[0], se[1]));
     assert_true(se[1] < 0.8 * se[0]);
 }
@@ -256,7 +256,7 @@ int main(void)
         cmocka_unit_test(emission),
         cmocka_unit_test(coloured_emission),
         cmocka_unit_test(overlap),
-        cmocka_unit_test(mixture),
+        cmocka_unit_test(guide),
         cmocka_unit_test(same_again),
         cmocka_unit_test(safety_cap),
     };

@@ -225,6 +225,9 @@ void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     if (job->outputs & TYN_OUTPUT_PROBE) {
         tyn_add_probe(g, job, in);
     }
+    if (job->guide) {
+        tyn_add_guide(g, job, in);
+    }
     if (job->outputs & TYN_OUTPUT_LIGHT) {
         tyn_add_light_field(g, job, in);
     }

@@ -20,9 +20,12 @@ static uint32_t points_outside(const tyn_job *job)
     return count;
 }
 
+// Which light, in which form.
+enum form { ALL, SCATTERED, PARTS };
+
 // The node; its results.
 static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in,
-                         tyn_ref points, bool scattered_only)
+                         tyn_ref points, enum form wanted)
 {
     tyn_probe_params params;
     tyn_settings_params(job->settings, &tyn_pass_probe, &params);
@@ -34,7 +37,8 @@ static tyn_ref add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs
     if (in->sources->lamps.radials.radials.resource) {
         params.local_lights = in->sources->lamps.vpls ? TYN_PROBE_LOCAL_ALL : TYN_PROBE_LOCAL_LAMPS;
     }
-    params.scattered_only = scattered_only;
+    params.scattered_only = wanted == SCATTERED;
+    params.parts = wanted == PARTS;
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
     }
@@ -66,8 +70,9 @@ void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
                      "light is the nearest face's, too much",
                      outside, job->view->num_points);
     }
-    tyn_job_output(g, job, TYN_OUTPUT_PROBE,
-                   add_probe(g, job, in, job->refs.points, job->view->scattered_only));
+    tyn_job_output(
+        g, job, TYN_OUTPUT_PROBE,
+        add_probe(g, job, in, job->refs.points, job->view->scattered_only ? SCATTERED : ALL));
 }
 
 tyn_ref tyn_add_field_points(tyn_graph *g, const tyn_job *job, tyn_extent size)
@@ -87,10 +92,10 @@ static void add_field_images(tyn_graph *g, const tyn_light_field_params *params,
     memcpy(images, &refs[LIGHT_FIELD_PORT_RED], 3 * sizeof *images);
 }
 
-void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size, tyn_ref results,
-                          tyn_ref images[3])
+// Images of the frame of these names.
+static void add_named_images(tyn_graph *g, const tyn_job *job, const char *const names[3],
+                             tyn_extent size, tyn_ref results, tyn_ref images[3])
 {
-    static const char *const names[] = {"field_red", "field_green", "field_blue"};
     tyn_light_field_params params = {0};
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.args.world[axis], job->frame->m_from_world + 4 * axis,
@@ -99,6 +104,24 @@ void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size, tyn
                                                VK_FORMAT_R32G32B32A32_SFLOAT, size, 1);
     }
     add_field_images(g, &params, results, images);
+}
+
+void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size, tyn_ref results,
+                          tyn_ref images[3])
+{
+    static const char *const names[] = {"field_red", "field_green", "field_blue"};
+    add_named_images(g, job, names, size, results, images);
+}
+
+void tyn_add_guide(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
+{
+    enum { CELLS = 32 }; // along the longest side: with twice or half as many paths are as noisy
+    static const char *const names[] = {"guide_scattered", "guide_beams", "guide_none"};
+    const tyn_extent size = tyn_lattice_dims(job->frame->medium.extent, CELLS);
+    tyn_ref images[3];
+    const tyn_ref points = tyn_add_field_points(g, job, size);
+    add_named_images(g, job, names, size, add_probe(g, job, in, points, PARTS), images);
+    memcpy(job->guide, images, 2 * sizeof *images);
 }
 
 // A probe at every texel.
@@ -113,6 +136,8 @@ void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs
         tyn_add_field_points(g, job, (tyn_extent){size.width, size.height, size.depth});
     tyn_ref images[3];
     memcpy(images, job->refs.light, sizeof images);
-    add_field_images(g, &params, add_probe(g, job, in, points, !job->light->unscattered), images);
+    add_field_images(g, &params,
+                     add_probe(g, job, in, points, job->light->unscattered ? ALL : SCATTERED),
+                     images);
     tyn_job_output(g, job, TYN_OUTPUT_LIGHT, images[0]);
 }

@@ -128,7 +128,7 @@ static void record(tyn_recorder *r, const void *params)
     path_specialise(spec, &p->path);
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = 0; // light is left at points that tracking examines
     spec[TYN_PATH_SPEC_FLAGS] &=
-        ~(uint32_t)(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE | TYN_PATH_EMISSIVE);
+        ~(uint32_t)(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_GUIDED | TYN_PATH_EMISSIVE);
     tyn_rec_update(r, PHOTON_TRACE_PORT_PLAN, 0, &plan, sizeof plan);
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1}, .args = &turn);
     TYN_DISPATCH(r, .kernel = KERNEL_CLEAR, .cells = {turn.quads, 1, 1}, .args = &turn);

@@ -41,6 +41,9 @@ typedef struct tyn_scene_refs {
     // Light that has scattered, red, green and blue: 3D images over the media's box of fluence (x) and net flux along M's axes, W/m^2.
     // Paths of view.max_depth scatterings end in it; {0}: they end in the dark.
     tyn_ref field[3];
+    // What paths are guided by: fluence and net flux likewise, means of all channels, of what the lattice holds and of beams; {0}:
+    // the method path asks pop.
+    tyn_ref guide[2];
     tyn_ref resumed[6]; // tyn_view.resume: its images, in their order; {0}: none
 } tyn_scene_refs;
 
@@ -69,6 +72,8 @@ typedef struct tyn_job {
     uint32_t num_hooks;
     // By TYN_INDEX_*: outputs go here, to be read in the same frame (tyn_job_declare). NULL: they are given out.
     tyn_ref *made;
+    // Not NULL: the method puts images for tyn_scene_refs.guide here (tyn_add_views). Methods that have no lattice leave it.
+    tyn_ref *guide;
     const tyn_log *log; // for what makes the frame impossible; warnings: tyn_job_warn
     void (*warn)(void *user, const char *line); // goes to the report's warnings, once per text
     void *warn_user;

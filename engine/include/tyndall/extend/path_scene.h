@@ -14,6 +14,8 @@ extern "C" {
 TYN_API void tyn_path_scene(const tyn_job *job, tyn_path_params *params);
 // The bundle TYN_PATH_SCENE, which begins the ports of each of these passes. `bricks`: of the medium; {0} without one.
 TYN_API void tyn_connect_path_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks);
+// Will method path ask for images by which its paths are guided (tyn_scene_refs.guide)?
+TYN_API bool tyn_path_wants_guide(const tyn_job *job);
 // Nanoseconds of a path on two cores of a software device, about.
 TYN_API double tyn_path_cost_ns(const tyn_job *job, bool homogeneous);
 

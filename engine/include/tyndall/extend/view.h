@@ -52,6 +52,8 @@ TYN_API tyn_ref tyn_add_field_points(tyn_graph *g, const tyn_job *job, tyn_exten
 // Probes' `results` at these places as images: for tyn_scene_refs.field.
 TYN_API void tyn_add_field_images(tyn_graph *g, const tyn_job *job, tyn_extent size,
                                   tyn_ref results, tyn_ref images[3]);
+// What paths are guided by, into job->guide.
+TYN_API void tyn_add_guide(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // The light field in the host's images.
 TYN_API void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Where the energy goes.
