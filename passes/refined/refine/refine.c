@@ -108,7 +108,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_extent fitted = blended ? pixels : none;
     tyn_build_image(b, REFINE_PORT_FITTED, fitted, 1);
     tyn_build_buffer(b, REFINE_PORT_RESIDUALS,
-                     sizeof(float[2]) * (uint64_t)over(fitted.x, 8) * over(fitted.y, 8));
+                     sizeof(struct refine_residuals) * (uint64_t)over(fitted.x, 8) *
+                         over(fitted.y, 8));
     tyn_build_buffer(b, REFINE_PORT_TILES, tiles * REFINE_CANDIDATES * sizeof(float));
     tyn_build_buffer(b, REFINE_PORT_CHOICES, tiles * sizeof(uint32_t));
     tyn_build_buffer(b, REFINE_PORT_CHANGES, tiles * sizeof(struct refine_changes));
@@ -180,6 +181,7 @@ static void record(tyn_recorder *r, const void *params)
                               : NULL);
     if (blended) {
         TYN_DISPATCH(r, .kernel = KERNEL_RESIDUAL, .cells = pixels, .args = &args);
+        TYN_DISPATCH(r, .kernel = KERNEL_LEVEL, .cells = threads(p, 64, 1), .args = &args);
         TYN_DISPATCH(r, .kernel = KERNEL_BLEND, .cells = pixels, .args = &args);
     }
 }

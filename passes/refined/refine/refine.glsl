@@ -96,4 +96,21 @@ refine_sums refine_add(refine_sums a, refine_sums b, float w)
                        a.change + w * b.change, a.residual + w * b.residual, a.noise + w * b.noise,
                        a.excess + w * b.excess, a.spread + w * b.spread);
 }
+
+refine_residuals refine_add(refine_residuals a, refine_residuals b, float w)
+{
+    return refine_residuals(a.difference + w * b.difference, a.noise + w * b.noise, a.fit + w * b.fit, a.less + w * b.less,
+                            a.variance + w * w * b.variance);
+}
+
+const refine_residuals REFINE_NO_RESIDUALS = refine_residuals(0.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+
+// By what the fit is to be multiplied, so that its sum over a window is the samples', as far as these differ by more than their noise
+// (James and Stein). `level`: by what it is multiplied already.
+vec3 refine_level(refine_residuals sum, vec3 level, float doubt)
+{
+    const vec3 fit = level * sum.fit, less = sum.less + sum.fit - fit;
+    const vec3 share = clamp(1.0 - doubt * sum.variance / max(less * less, 1e-30), 0.0, 1.0);
+    return level * clamp(1.0 + share * less / max(fit, 1e-20), 0.0, 2.0);
+}
 #endif

@@ -44,7 +44,7 @@ typedef struct tyn_refine_params {
     X(REFINE, ERRORS, errors, SCRATCH, RGBA_2D, "mean squares of both in tiles, in the units of refine_sums"), \
     X(REFINE, FINAL, final, SCRATCH, RGBA_2D, "coefficients of cells"), \
     X(REFINE, FITTED, fitted, SCRATCH, RGBA_2D, "the fit, where samples are blended in"), \
-    X(REFINE, RESIDUALS, residuals, SCRATCH, BUFFER, "vec2 by tile of pixels: squares of differences, of noise"), \
+    X(REFINE, RESIDUALS, residuals, SCRATCH, BUFFER, "struct refine_residuals, by tile of pixels"), \
     X(REFINE, CHANGES, changes, SCRATCH, BUFFER, "struct refine_changes, by tile"), \
     X(REFINE, SUMS, sums, SCRATCH, BUFFER, "struct refine_sums, by group of cells"), \
     X(REFINE, TOTALS, totals, SCRATCH, BUFFER, "struct refine_totals")

@@ -68,9 +68,20 @@ TYN_ASSERT_SIZE(refine_changes, 12);
 #define REFINE_KNOWN 0.99f // least A of what was kept
 
 struct refine_totals {
-    tyn_vec3 mean; // of pop's picture
-    float share;   // of the change that is confirmed
+    tyn_vec3 mean;  // of pop's picture
+    float share;    // of the change that is confirmed
+    tyn_vec3 level; // by which the fit is multiplied, so that its sum is the samples'
 };
-TYN_ASSERT_SIZE(refine_totals, 16);
+TYN_ASSERT_SIZE(refine_totals, 28);
+
+// Sums over a tile of 8 x 8 pixels.
+struct refine_residuals {
+    float difference,
+        noise; // squares of samples less fit, and of the samples' standard errors, times refine_weight
+    tyn_vec3 fit;
+    tyn_vec3 less;     // samples less fit
+    tyn_vec3 variance; // of that sum
+};
+TYN_ASSERT_SIZE(refine_residuals, 44);
 
 #endif
