@@ -170,18 +170,19 @@ int stress_render(app *a, tyn_device *device, const char *with, const stress_cas
     r.view.outputs = TYN_OUTPUT_RADIANCE | (r.info.outputs & TYN_OUTPUT_ERROR) |
                      (r.info.progressive ? 0 : r.info.outputs & TYN_OUTPUT_TRANSMITTANCE);
     uint32_t samples = 4;
-    double start = app_seconds();
     for (int turn = 0; code == EXIT_DONE; turn++) {
+        const double start = app_seconds();
         code = frame(&r, samples);
         if (code != EXIT_DONE || counts->failure) {
             break;
         }
         take_picture(&r, picture);
         take_report(r.offline, counts);
-        // The first frame's time is that of making kernels.
-        double used = turn == 0 ? 0.001 * tyn_offline_frame_ms(r.offline) : app_seconds() - start;
+        // The first frame makes kernels, and what the paths need to know of the scene.
+        const double used = turn == 0 ? 0.001 * tyn_offline_frame_ms(r.offline)
+                                      : 4 * (app_seconds() - start);
         bool enough = picture->noise <= effort->noise && turn > 1;
-        if (!r.info.progressive || enough || 4 * used > effort->seconds) {
+        if (!r.info.progressive || enough || used > effort->seconds) {
             break;
         }
         samples = 3 * r.view.first_sample;
