@@ -92,7 +92,7 @@ refine_changes refine_add_changes(refine_changes a, refine_changes b, float w)
 
 refine_sums refine_add(refine_sums a, refine_sums b, float w)
 {
-    return refine_sums(a.cells + w * b.cells, a.confirmed + w * b.confirmed, a.doubt + w * b.doubt,
+    return refine_sums(a.cells + w * b.cells, a.light + w * b.light, a.confirmed + w * b.confirmed, a.doubt + w * b.doubt,
                        a.change + w * b.change, a.residual + w * b.residual, a.noise + w * b.noise,
                        a.excess + w * b.excess, a.spread + w * b.spread);
 }

@@ -26,8 +26,8 @@
 #define REFINE_COEFFICIENTS_ROW 3
 #define REFINE_FINAL 3 // coefficients of pop, single and 1
 
-// Relative error that pop is taken to have where samples do not tell: with it estimates are as often too large as too small.
-#define REFINE_PRIOR 0.06f
+// Relative error that pop is taken to have where samples do not tell, somewhat above its mean: refinement may be too much to hope for.
+#define REFINE_PRIOR 0.09f
 
 struct refine_args {
     tyn_uvec2 picture; // pixels
@@ -48,6 +48,7 @@ TYN_ASSERT_SIZE(refine_args, 80);
 // Over the cells of a tile, each a sum over channels of squares times refine_weight over the mean radiance.
 struct refine_sums {
     float cells;
+    float light;     // pop's over the picture's mean
     float confirmed; // change of three parts times residual of the fourth
     float doubt;     // its variance by the samples' noise
     float change;    // change squared
@@ -56,7 +57,7 @@ struct refine_sums {
     float excess;    // (residual - noise) squared
     float spread;    // variance of the change, by leaving out parts
 };
-TYN_ASSERT_SIZE(refine_sums, 32);
+TYN_ASSERT_SIZE(refine_sums, 36);
 
 // Over the cells of a tile in which something was kept, each a sum over channels of squares in units of the light.
 struct refine_changes {

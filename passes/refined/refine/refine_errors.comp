@@ -18,7 +18,7 @@ void main()
     if (any(greaterThanEqual(tile, size))) {
         return;
     }
-    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     float excess = 0.0;
     for (int k = 0; k < 49; k++) {
         const ivec2 away = ivec2(k % 7, k / 7) - 3, at = tile + away;
@@ -30,7 +30,7 @@ void main()
     }
     const float n = 3.0 * sum.cells, share = totals.share; // three channels
     const vec2 found = vec2(sum.residual - sum.noise, share * share * sum.change - 2.0 * share * sum.confirmed + sum.residual - sum.noise) / n;
-    const float before = REFINE_PRIOR * REFINE_PRIOR, trust = before * before * n * n / max(excess, 1e-30);
+    const float before = REFINE_PRIOR * REFINE_PRIOR * max(sum.light / n, 1e-6), trust = before * before * n * n / max(excess, 1e-30);
     vec2 errors = (found * trust + before) / (trust + 1.0);
     errors = max(errors, vec2(0.04 * before, max(0.04 * before, share * share * sum.spread / n)));
     imageStore(errors_image, tile, vec4(errors, 0.0, 0.0));

@@ -9,7 +9,7 @@ shared refine_sums part[64];
 void main()
 {
     const uint thread = gl_LocalInvocationIndex;
-    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (uint i = thread; i < args.groups; i += 64u) {
         sum = refine_add(sum, sums[i], 1.0);
     }
