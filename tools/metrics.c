@@ -186,6 +186,18 @@ metrics_status metrics_compare(const metrics_image *image, const metrics_image *
     return status;
 }
 
+double metrics_expected(const float *rgba, const float *error, size_t num_pixels)
+{
+    double sum = 0, all = 0;
+    for (size_t i = 0; i < num_pixels; i++) {
+        for (size_t c = 0; c < 3; c++) {
+            sum += (double)error[4 * i + c];
+            all += fabs((double)rgba[4 * i + c]);
+        }
+    }
+    return all > 0 ? mean_abs_normal * sum / all : 0;
+}
+
 metrics_status metrics_heat(const metrics_image *image, const metrics_image *reference,
                             uint32_t block, float *heat)
 {

@@ -1,6 +1,7 @@
 // metrics.h -- how far an image is from a reference.
 #pragma once
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct metrics_image {
@@ -37,6 +38,10 @@ typedef enum metrics_status {
 // Both images have the same size; block >= 1.
 metrics_status metrics_compare(const metrics_image *image, const metrics_image *reference,
                                uint32_t block, metrics *out);
+
+// `n` of single pixels, where `error` is what a picture's values err by as a root mean square: the relative L1 that is
+// expected of them. Four floats a pixel, the fourth is not read; 0 of a black picture.
+double metrics_expected(const float *rgba, const float *error, size_t num_pixels);
 
 // |x - r| / (|r| + 0.01 m) averaged over the channels, one value a pixel, constant over a block; a
 // block with no finite value is NaN. `heat` has width * height elements.

@@ -1,5 +1,6 @@
 // until.c -- see until.h.
 #include "until.h"
+#include "metrics.h"
 #include <math.h>
 #include <string.h>
 
@@ -24,9 +25,14 @@ void until_method(float error, method_options *how)
     how->until = error;
 }
 
+bool until_tells(const tyn_method_info *info)
+{
+    return info->progressive && info->outputs & TYN_OUTPUT_ERROR;
+}
+
 bool until_check(app *a, const tyn_method_info *info, const char *text)
 {
-    const bool tells = info->progressive && info->outputs & TYN_OUTPUT_ERROR;
+    const bool tells = until_tells(info);
     if (!tells) {
         app_error(a,
                   "--until %s: method '%s' does not say how far it is off; leave --method out, or "
@@ -36,17 +42,11 @@ bool until_check(app *a, const tyn_method_info *info, const char *text)
     return tells;
 }
 
-// Relative L1 that the picture's own standard errors stand for, as `tyndall compare` has it.
 static float estimate(const renderer *r, const tyn_view *view)
 {
     const float *light = tyn_offline_output(r->offline, TYN_OUTPUT_RADIANCE);
     const float *error = tyn_offline_output(r->offline, TYN_OUTPUT_ERROR);
-    double sum = 0, all = 0;
-    for (size_t i = 0; light && error && i < 4 * (size_t)view->width * view->height; i++) {
-        sum += i % 4 < 3 ? (double)error[i] : 0;
-        all += i % 4 < 3 ? fabs((double)light[i]) : 0;
-    }
-    return all > 0 ? (float)(sqrt(2 / 3.14159265358979) * sum / all) : 0;
+    return (float)metrics_expected(light, error, (size_t)view->width * view->height);
 }
 
 int until_render(app *a, renderer *r, const tyn_scene *scene, const tyn_view *view, float error,

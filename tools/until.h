@@ -9,7 +9,9 @@ bool until_parse(app *a, const char *text, float *error);
 
 // The method that is meant where none is said, and what it takes to reach the error. Before method_open.
 void until_method(float error, method_options *how);
-// False: the method does not tell its error; said.
+// The method tells its error, and more samples make it smaller.
+bool until_tells(const tyn_method_info *info);
+// False: it does not; said.
 bool until_check(app *a, const tyn_method_info *info, const char *text);
 
 // Renders at most view->num_samples samples. *samples: how many; *ms: of all of them. Gives the exit code; a line says

@@ -97,6 +97,16 @@ static void assert_no_measure(const metrics *m)
     }
 }
 
+// What errors alone make of single pixels, without a reference.
+static void expects_noise(void **state)
+{
+    (void)state;
+    const float rgba[8] = {1, 0, -3, NAN, 2, 0, 1, NAN};
+    const float error[8] = {0.1f, 0.2f, 0, NAN, 0.1f, 0.1f, 0.1f, NAN}, black[8] = {0};
+    NEAR(metrics_expected(rgba, error, 2), sqrt(2 / acos(-1.0)) * 0.6 / 7);
+    NEAR(metrics_expected(black, error, 2), 0.0);
+}
+
 static void has_no_measure_of_nan(void **state)
 {
     (void)state;
@@ -159,6 +169,7 @@ int main(void)
         cmocka_unit_test(averages_blocks),
         cmocka_unit_test(weighs_edge_blocks),
         cmocka_unit_test(explains_noise),
+        cmocka_unit_test(expects_noise),
         cmocka_unit_test(has_no_measure_of_nan),
         cmocka_unit_test(has_no_error_within_unknown_noise),
         cmocka_unit_test(refuses_zero_reference),
