@@ -515,6 +515,63 @@ def test_label(screen, work):
     check(compared.get("n", 0) > 0.5 * compared.get("rel_l1", 1), f"one sample: {compared}")
 
 
+def test_estimate(screen, work):
+    """The panel tells the error that a method estimates of its picture at rest, and draws how it falls with the samples."""
+    size, scene = (320, 300), os.path.join(SCENES, "cube.gltf")
+
+    def reach():
+        """How far right the curve goes: beyond 283 once there are as many samples as are asked for. 0: there is none."""
+        rgb, row = screen.shot(308, size[1]), 3 * 308
+        return max((i % row // 3 for i in range(0, len(rgb), 3)
+                    if abs(rgb[i] - 255) + abs(rgb[i + 1] - 224) + abs(rgb[i + 2] - 32) < 90), default=0)
+
+    def expected(method, told, divisor):
+        """Of so many samples, by compare: what the layer `error` explains."""
+        width, height = ((n + divisor - 1) // divisor for n in size)
+        for path, layers in [("told.exr", ["--aov", "error"]), ("bare.exr", [])]:
+            subprocess.run([TYNDALL, "render", "-q", scene, "--size", f"{width}x{height}", "-o", path, *method, *layers,
+                            "--spp", str(told["samples"])], cwd=work, check=True)
+        done = subprocess.run([TYNDALL, "compare", "told.exr", "bare.exr"], cwd=work, check=True, capture_output=True, text=True)
+        return float([l.split()[1] for l in done.stdout.splitlines() if l.startswith("n ")][0])
+
+    def agrees(what, method, stats, least):
+        told = stats.get("estimate") or {"samples": 1, "error": 0}
+        check(told["samples"] >= least, f"{what}: the estimate is of {told['samples']} samples")
+        right = expected(method, told, stats.get("rest_divisor", 1))
+        check(abs(told["error"] - right) < 0.01 * right, f"{what}: the panel tells {told['error']}, compare {right}")
+        check(stats.get("validation_messages") == 0, f"{what}: validation messages")
+        return told
+
+    if "refined" in methods():
+        refined = ["--method", "refined", "-D", "refine.carry=false"]
+        viewer = Viewer(screen, work, scene, "--validate", "--panel", "--spp", "8", *refined, size=size)
+        check(viewer.until(lambda: reach() > 283, 120), "refined: no curve to the end")
+        viewer.key("o")
+        check(viewer.until(lambda: reach() == 0), "refined: the curve stays while the picture moves")
+        viewer.key("o", "r")
+        check(viewer.until(lambda: reach() > 283, 120), "refined: no curve of another picture")
+        keep("estimate", viewer.settled(*size), *size)
+        told = agrees("refined", refined, viewer.close(), 8)
+        check(0 < told.get("bias", 0) < 0.2, f"refined: {told}")
+
+    path = ["--method", "path"]
+    viewer = Viewer(screen, work, scene, "--validate", "--spp", "16", *path, size=size)
+    viewer.settled(*size)
+    viewer.key("h")
+    check(viewer.until(lambda: reach() > 283, 120), "path: no estimate of a picture that was begun before the panel came")
+    agrees("path", path, viewer.close(), 16)
+
+    viewer = Viewer(screen, work, scene, "--panel", "--spp", "16", *path, size=size)
+    check(viewer.until(lambda: reach() > 283, 120), "path: no curve to the end")
+    keep("estimate-path", viewer.settled(*size), *size)
+    viewer.key(str(methods().index("pop") + 1))
+    check(viewer.until(lambda: reach() == 0), "pop: there is a curve")
+    viewer.key("h")
+    viewer.key(str(methods().index("path") + 1))
+    viewer.settled(*size)
+    check("estimate" not in viewer.close(), "there is an estimate while the panel is hidden")
+
+
 def bright(screen, x):
     """Mean of a column."""
     rgb = screen.shot()
@@ -716,8 +773,8 @@ def main():
         print("skipped: all cases (no Vulkan device)")
         return 77
     test_no_display()
-    tests = [test_camera_and_methods, test_old_picture_stays, test_window, test_save, test_split_and_probe, test_hidpi, test_label, test_panel, test_slow,
-             test_reload, test_reload_parts, test_sequence, test_drop, test_rebuild, test_lost] + ([test_plugin] if PLUGIN else [])
+    tests = [test_camera_and_methods, test_old_picture_stays, test_window, test_save, test_split_and_probe, test_hidpi, test_label, test_panel, test_estimate,
+             test_slow, test_reload, test_reload_parts, test_sequence, test_drop, test_rebuild, test_lost] + ([test_plugin] if PLUGIN else [])
     only = os.environ.get("VIEW_TESTS", "").split()
     for test in tests:
         if only and test.__name__ not in only:

@@ -345,6 +345,25 @@ static void work_row(const viewer *v, const rendering *r)
     }
 }
 
+// Of pictures at rest; the place is kept for it, so that the widgets below stay where they are.
+static void estimate_rows(const viewer *v)
+{
+    static const estimate none;
+    const estimate *e = v->sharp ? &v->estimate : &none;
+    const uint32_t wanted = pictures_samples_wanted(v);
+    const uint32_t most = e->samples > wanted ? e->samples : wanted;
+    char text[64] = "of pictures at rest";
+    if (e->bias > 0) {
+        snprintf(text, sizeof text, "%.2g %% (pop %.2g %%)", 100 * (double)e->error,
+                 100 * (double)e->bias);
+    } else if (e->samples) {
+        snprintf(text, sizeof text, "%.2g %%", 100 * (double)e->error);
+    }
+    panel_row("estimated error", text);
+    snprintf(text, sizeof text, "1 to %u samples", most);
+    panel_curve(text, e->curve + 1, (int)estimate_place(most));
+}
+
 static void state_rows(const viewer *v)
 {
     const rendering *r = shown_rendering(v);
@@ -353,6 +372,9 @@ static void state_rows(const viewer *v)
     if (r->context && r->method.progressive) {
         snprintf(text, sizeof text, "%u", r->samples);
         panel_row("samples a pixel", text);
+    }
+    if (estimate_told(v)) {
+        estimate_rows(v);
     }
 }
 

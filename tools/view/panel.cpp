@@ -5,6 +5,8 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
+#include <math.h>
+#include <stdio.h>
 
 // ---- life -------------------------------------------------------------------------------------
 
@@ -157,6 +159,44 @@ bool panel_checkbox(const char *label, bool *value)
 bool panel_button(const char *label)
 {
     return ImGui::Button(label);
+}
+
+void panel_curve(const char *label, const float *values, int count)
+{
+    const float line = ImGui::GetTextLineHeight(), width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 size(width, 6 * line), at = ImGui::GetCursorScreenPos();
+    const ImVec2 end(at.x + size.x, at.y + size.y);
+    const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled), bright = 0xff20e0ff;
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    ImGui::Dummy(size);
+    list->AddRectFilled(at, end, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    list->AddText(ImVec2(at.x + 3, end.y - line), faint, label);
+    float low = INFINITY, high = 0;
+    for (int i = 0; i < count; i++) {
+        low = values[i] > 0 ? fminf(low, values[i]) : low;
+        high = fmaxf(high, values[i]);
+    }
+    if (!(low <= high)) {
+        return;
+    }
+    const float bottom = floorf(log10f(low)), decades = fmaxf(ceilf(log10f(high)) - bottom, 1);
+    for (float i = 0; i <= decades; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "%g %%", 100 * pow(10, bottom + i));
+        const float y = end.y - size.y * i / decades, x = end.x - ImGui::CalcTextSize(text).x - 3;
+        list->AddLine(ImVec2(at.x, y), ImVec2(end.x, y), ImGui::GetColorU32(ImGuiCol_Separator));
+        list->AddText(ImVec2(x, i > 0 ? y : y - line), faint, text);
+    }
+    ImVec2 last;
+    for (int i = 0; i < count; i++) {
+        if (values[i] > 0) {
+            last.x = at.x + size.x * (float)i / (float)(count > 1 ? count - 1 : 1);
+            last.y = end.y - size.y * (log10f(values[i]) - bottom) / decades;
+            list->PathLineTo(last);
+        }
+    }
+    list->PathStroke(bright, 0, 1.5f);
+    list->AddCircleFilled(last, 2.5f, bright);
 }
 
 void panel_push(int id)

@@ -150,6 +150,7 @@ static rendering_state begin(viewer *v, viewer_task task, rendering *r, uint32_t
     } else {
         if (task != TASK_SMALL) {
             probe_ask(v, &view);
+            estimate_ask(v, &view);
         }
         state = rendering_begin(r, &v->scene, &view, task == TASK_SAMPLES);
     }
@@ -205,6 +206,7 @@ static void take_rest(viewer *v, const rendering *r)
     }
     keep(v, r);
     probe_take(v, r);
+    estimate_take(v, r, more);
     v->sharp = true; // sharpen() may find that a still sharper one is to be had
     if (more) {
         return;
@@ -322,7 +324,8 @@ uint32_t pictures_pending(const viewer *v)
 
 static bool wants_samples(const viewer *v)
 {
-    return v->method.info.progressive && v->rest.samples < pictures_samples_wanted(v);
+    return v->method.info.progressive &&
+           (v->rest.samples < pictures_samples_wanted(v) || estimate_missing(v));
 }
 
 bool pictures_working(const viewer *v)

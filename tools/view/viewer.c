@@ -440,6 +440,12 @@ static int write_stats(const viewer *v)
         json_add_float(compared, "rel_l1", c->error.rel_l1);
         json_add_float(compared, "n", c->error.n);
     }
+    if (v->estimate.samples) {
+        cJSON *told = cJSON_AddObjectToObject(root, "estimate");
+        cJSON_AddNumberToObject(told, "samples", v->estimate.samples);
+        json_add_float(told, "error", v->estimate.error);
+        json_add_float(told, "bias", v->estimate.bias);
+    }
     if (v->probe.state == PROBE_KNOWN) {
         cJSON *probe = cJSON_AddObjectToObject(root, "probe");
         cJSON_AddItemToObject(probe, "point", json_floats(v->probe.position, 3));

@@ -5,6 +5,7 @@
 #include "sequence.h"
 #include "view/camera_control.h"
 #include "view/comparison.h"
+#include "view/estimate.h"
 #include "view/picture.h"
 #include "view/probe_point.h"
 #include "view/rebuild.h"
@@ -87,6 +88,7 @@ struct viewer {
     double last_change; // seconds
     comparison comparison;
     probe_point probe;
+    estimate estimate;
     bool save_wanted; // when the picture is sharp
     float *pixels;    // of the sharp picture, radiance, four floats a pixel
     uint32_t pixels_width, pixels_height;
@@ -173,6 +175,15 @@ void probe_place(viewer *v); // under the pointer
 void probe_remove(viewer *v);
 void probe_ask(const viewer *v, tyn_view *view); // for what it needs of a sharp picture
 void probe_take(viewer *v, const rendering *r);  // what that gave
+
+// estimate.c: as the method tells it, of pictures at rest while the panel is there.
+bool estimate_told(const viewer *v);
+void estimate_ask(const viewer *v, tyn_view *view); // for the layers
+// `more`: the picture is the last one with more samples.
+void estimate_take(viewer *v, const rendering *r, bool more);
+bool estimate_missing(const viewer *v); // of the samples that there are
+// In the curve: eight for each doubling of the samples, as all pixels are read for one.
+uint32_t estimate_place(uint32_t samples);
 
 // save.c
 void save_picture(viewer *v); // the sharp picture
