@@ -43,7 +43,11 @@ static bool use_method(viewer *v, const method_options *how)
     method made;
     v->asked_at = app_seconds();
     const uint32_t errors = v->app->num_errors;
-    bool works = method_open(v->app, how, &made) == EXIT_DONE;
+    method_options own = *how;
+    if (own.method && strcmp(own.method, "refined") == 0 && !own.refine && !own.spp) {
+        own.refine = "4096"; // as pictures_samples_wanted: so many that none may end in pop's field
+    }
+    bool works = method_open(v->app, &own, &made) == EXIT_DONE;
     if (works && scene_prepare(v->app, &made.info, &v->scene) != EXIT_DONE) {
         works = false;
     }
