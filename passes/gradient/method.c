@@ -245,11 +245,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         }
     }
     // The field has all of it.
-    const tyn_sources marched = {.medium = s.medium,
-                                 .bricks = s.bricks,
-                                 .distance = s.distance,
-                                 .shadows = s.shadows,
-                                 .light_cells = s.light_cells};
+    const tyn_sources marched = {
+        .medium = s.medium, .bricks = s.bricks, .distance = s.distance, .shadows = s.shadows};
     tyn_view_inputs view = {.sources = &marched, .field = &field};
     tyn_gather(g, job, &view);
     add_surfaces(g, job, &s, &solved, &view);

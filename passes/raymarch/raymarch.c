@@ -18,7 +18,7 @@ enum {
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 31 powers of two with this sum are all different.
+// 30 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_EMISSION + RAYMARCH_MEAN + RAYMARCH_HOST_DEPTH +
                        RAYMARCH_BACKGROUND + RAYMARCH_BEHIND + RAYMARCH_CLOSED +
@@ -27,9 +27,8 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS +
                        RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
-                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE +
-                       RAYMARCH_NOISE + RAYMARCH_TABLED ==
-                   UINT32_MAX >> 1,
+                       RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE + RAYMARCH_NOISE + RAYMARCH_TABLED ==
+                   UINT32_MAX >> 2,
                "features have bits of their own");
 
 static const tyn_param params_table[] = {
@@ -206,7 +205,6 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
                     ? RAYMARCH_ROOMS
                     : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_SHADOW_ATLAS) ? RAYMARCH_SHADOWS : 0;
-    features |= tyn_rec_has(r, RAYMARCH_PORT_LIGHT_CELLS) ? RAYMARCH_LIGHT_CELLS : 0;
     return features;
 }
 

@@ -173,7 +173,7 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u, 0.0, 0u);
+    state.shadow = march_shadows(0u, 0u, 0.0);
     return state;
 }
 
@@ -223,19 +223,6 @@ struct march_step {
     spectrum weight, weight_scaled;
 };
 
-// Is there a sun or a lamp that may shine on the step?
-bool march_any_light(march_shadows shadow, march_lamp kept[MARCH_LAMPS_KEPT])
-{
-    bool any = false;
-    for (uint n = 0u; n < raymarch_num_suns; n++) {
-        any = any || march_light_cell(shadow, n) != TYN_LIGHT_CELLS_DARK;
-    }
-    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-        any = any || march_light_cell(shadow, kept[n].grid.light.shadow) != TYN_LIGHT_CELLS_DARK;
-    }
-    return any || raymarch_num_lamps > MARCH_LAMPS_KEPT;
-}
-
 // Light of suns and lamps that the step scatters towards the eye.
 vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], march_lamps lamps,
                  march_medium unit, march_medium m, vec3 origin, vec3 direction, march_step b,
@@ -245,7 +232,7 @@ vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_
     for (uint n = 0u; n < raymarch_num_suns; n++) {
         float lit = 1.0;
         if (raymarch_has(RAYMARCH_SHADOWS)) {
-            lit = march_lit_of(true, suns[n].map, n, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
+            lit = march_lit_of(true, suns[n].map, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
         }
         light += march_sunlight(suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
                                 lit * b.weight_scaled, single);
@@ -360,10 +347,9 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
         int i = 0;
         while (i < RAYMARCH_CHUNK && state.s < end && spectrum_max(state.through_scaled) > args.stop &&
                march_has_room()) {
-            // Neighbouring rays look for their next step that is not empty together; where it is known what lights see,
-            // for their next one that is not in the dark, and go through the others on the way. The loop is tested at its
-            // top, and what is used after it has a value before it: of rays that have left a loop tested at its end some
-            // devices go on computing what is used behind it.
+            // Neighbouring rays look for their next step that is not empty together. The loop is tested at its top, and
+            // what is used after it has a value before it: of rays that have left a loop tested at its end some devices
+            // go on computing what is used behind it.
             march_medium m = march_medium_of(medium_of_density(0.0));
             march_step step = march_step(0.0, 0.0, 0.0, spectrum(0.0), spectrum(0.0));
             bool found = false;
@@ -385,22 +371,10 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 state.shadow.known = any ? state.shadow.known : 0u;
                 state.s += any ? 0.0 : ds;
                 state.next = full ? state.next : dense ? RAYMARCH_SHORT / most : args.step;
-                if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
-                    state.shadow.cells = full ? march_light_cells(origin, direction, state.s, ds) : state.shadow.cells;
-                    found = full && march_any_light(state.shadow, kept);
-                    // Where all is dark nothing need be looked for at the next step's beginning.
-                    state.shadow.lit = full && !found ? 0u : state.shadow.lit;
-                    state.shadow.known = full && !found ? ~0u : state.shadow.known;
-                    march_step here = march_through(m, full ? ds : 0.0, full, line, near.span, state);
-                    if (found) {
-                        step = here;
-                    }
-                } else {
-                    step.ds = full ? ds : 0.0;
-                    found = full;
-                }
+                step.ds = full ? ds : 0.0;
+                found = full;
             }
-            if (!raymarch_has(RAYMARCH_LIGHT_CELLS) && found) {
+            if (found) {
                 step = march_through(m, step.ds, true, line, near.span, state);
             }
             if (found && raymarch_num_suns + raymarch_num_lamps > 0u) {

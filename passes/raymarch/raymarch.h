@@ -79,7 +79,6 @@ enum {
     TYN_WALLS(X##_OPTIONAL, RAYMARCH), \
     X(RAYMARCH, ROOMS, rooms, OPTIONAL, BUFFER, "of rooms: with walls, what light of inscatter rays are among"), \
     TYN_SHADOWS(X##_OPTIONAL, RAYMARCH), \
-    X(RAYMARCH, LIGHT_CELLS, light_cells, OPTIONAL, IMAGE_3D, "of light_cells: where looks at the maps are needed"), \
     X(RAYMARCH, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
     X(RAYMARCH, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
     X(RAYMARCH, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "latitude-longitude map, W/(m^2 sr)"), \

@@ -30,9 +30,8 @@
 #define RAYMARCH_SPARSE_FILL (1u << 25)   // pixels where that is smooth; the others are listed
 #define RAYMARCH_SPARSE_REST (1u << 26)   // rays of those that are listed
 #define RAYMARCH_SPOTS (1u << 27)         // there are lamps that shine in a cone
-#define RAYMARCH_LIGHT_CELLS (1u << 28)   // it is known where lights see all, or nothing
-#define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid
-#define RAYMARCH_NOISE (1u << 30) // places at which medium and light are looked up are moved
+#define RAYMARCH_SPARSE_COARSE (1u << 28) // with SPARSE_FILL: nodes of the finer grid
+#define RAYMARCH_NOISE (1u << 29) // places at which medium and light are looked up are moved
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -2,7 +2,6 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/common/counters.h"
 #include "raymarch_args.h"
-#include "shaders/light/light_cells_args.h"
 
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;
@@ -12,7 +11,7 @@ layout(constant_id = 4) const uint raymarch_num_near = 0u; // lamps after these 
 layout(constant_id = 5) const uint raymarch_num_shapes = 1u;
 layout(constant_id = 6) const uint raymarch_kind = 0u; // of all shapes, or TYN_SHAPE_KIND_ANY
 
-#define PHASE_TABLES 40
+#define PHASE_TABLES 39
 #define PHASE_TABLED ((raymarch_features & RAYMARCH_TABLED) != 0u)
 #define MEDIUM_AT 0
 #define BEAMS_AT 5
@@ -42,9 +41,8 @@ layout(binding = 25) uniform sampler3D glow_wrapped;
 #define SHADOWS_STORAGE
 #define RADIALS_AT 33
 #define RADIALS_STORAGE
-layout(binding = 37) uniform sampler3D light_cells_tex;
-layout(binding = 38, rgba32f) uniform image2D sparse_image;
-layout(binding = 39, scalar) buffer rest_buffer
+layout(binding = 37, rgba32f) uniform image2D sparse_image;
+layout(binding = 38, scalar) buffer rest_buffer
 {
     raymarch_rest head[2];
     uint pixels[];

@@ -184,7 +184,7 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
         share = march_share(lamp.grid.light, lamp.cone, atan(a, h), atan(b, h), angle);
     }
     if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        march_lit lit = march_lit_of(false, lamp.map, lamp.grid.light.shadow, bit, s, ds, shadow);
+        march_lit lit = march_lit_of(false, lamp.map, bit, s, ds, shadow);
         if (lit.metres < ds) {
             float middle = along + (lit.middle - at);
             a = middle - 0.5 * lit.metres;

@@ -4,7 +4,6 @@
 
 const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
 const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
-const float RAYMARCH_CELLS_MOST = 8.0; // places of a step for which light_cells is asked
 
 // What stands before a light, as a view ray sees it. Read once a ray, as some devices read buffers slowly.
 struct march_map {
@@ -142,7 +141,6 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
 struct march_shadows {
     uint known, lit;
     float inside; // where to look at the farthest
-    uint cells;   // what is known of all of the step (light_cells_args.h)
 };
 
 float march_shadow_piece()
@@ -157,29 +155,6 @@ bool march_sees(bool sun, march_map m, float s, uint by)
     return ((sun ? shadow_lit_by(shadow_atlas, shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
 }
 
-// What is known of lights for all of the step from s to s + ds.
-uint march_light_cells(vec3 origin, vec3 direction, float s, float ds)
-{
-    if (!raymarch_has(RAYMARCH_LIGHT_CELLS)) {
-        return 0u;
-    }
-    ivec3 dims = textureSize(light_cells_tex, 0);
-    float per_edge = float(max(max(dims.x, dims.y), dims.z)) / max(max(medium.extent.x, medium.extent.y), medium.extent.z);
-    // Each place tells of what is within reach of it; what not all of them say is mixed.
-    float places = clamp(ceil(ds * (per_edge / (2.0 * TYN_LIGHT_CELLS_REACH))), 1.0, RAYMARCH_CELLS_MOST), part = ds / places;
-    uint cells = part * per_edge <= 2.001 * TYN_LIGHT_CELLS_REACH ? ~0u : 0u;
-    for (float i = 0.5; i < places && cells != 0u; i += 1.0) {
-        vec3 p = origin + (s + i * part) * direction;
-        cells &= uint(texelFetch(light_cells_tex, clamp(ivec3(p * per_edge), ivec3(0), dims - 1), 0).r);
-    }
-    return cells;
-}
-
-uint march_light_cell(march_shadows shadow, uint light)
-{
-    return light < TYN_LIGHT_CELLS ? shadow.cells >> (2u * light) & 3u : TYN_LIGHT_CELLS_MIXED;
-}
-
 // What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the
 // medium, shadows do not: so a step looks at several places, and halves what is between two that differ.
 struct march_lit {
@@ -187,7 +162,7 @@ struct march_lit {
 };
 
 // `bit`: of the light in `shadow`.
-march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, float ds, inout march_shadows shadow)
+march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
     float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
     float sum = 0.0, moment = 0.0;
@@ -196,13 +171,6 @@ march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, f
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
     // these are what costs time.
     float lo = 0.0, hi = 0.0;
-    uint cell = march_light_cell(shadow, light);
-    if (cell != TYN_LIGHT_CELLS_MIXED) {
-        lit = cell == TYN_LIGHT_CELLS_LIT;
-        lo = ds;
-        sum = lit ? ds : 0.0;
-        moment = ds * sum;
-    }
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;

@@ -1,7 +1,6 @@
 // shadow_map.c -- shadow maps against rays through all triangles, in double precision.
 #include "bound.h"
 #include "gpu_test.h"
-#include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "numbers.h"
 #include "point_pass.h"
@@ -582,83 +581,6 @@ static void insides_of_a_box(void **state)
     tyn_scene_finish(&scene);
 }
 
-// Of the cubes of a box around the scene: what is said of a light holds at places in and around the cube.
-static void cells_of_the_medium(void **state)
-{
-    gpu_test *t = *state;
-    tyn_scene scene;
-    struct surface_block s;
-    lights l;
-    tyn_shadow_map_params params;
-    setup_scene(&scene, &s, &l, &params);
-    tyn_light_cells_params cells = {.extent = {5, 3.5f, 6}, .num_suns = SUNS, .num_lamps = LAMPS};
-    cells.cells = 48; // edges of 0.125 m
-    enum { X = 40, Y = 28, Z = 48, COUNT = 40000 };
-    const float edge = 0.125f;
-    probe *probes = calloc(COUNT, sizeof *probes);
-    uint32_t *cell_of = calloc(COUNT, sizeof *cell_of);
-    float *found = calloc(COUNT, sizeof *found);
-    srand(6);
-    for (int i = 0; i < COUNT; i++) {
-        float m[3], w[3] = {0};
-        uint32_t cell[3];
-        for (int c = 0; c < 3; c++) {
-            const uint32_t dims[3] = {X, Y, Z};
-            cell[c] = (uint32_t)rand() % dims[c];
-            m[c] = edge * ((float)cell[c] + 0.5f +
-                           (2 * (float)uniform() - 1) * (0.5f + TYN_LIGHT_CELLS_REACH));
-        }
-        for (int c = 0; c < 3; c++) { // M is rigid to the world
-            for (int k = 0; k < 3; k++) {
-                w[c] += s.from_world[k][c] * (m[k] - s.from_world[k][3]);
-            }
-            probes[i].world[c] = (double)w[c];
-        }
-        probes[i].light = i % (SUNS + LAMPS);
-        cell_of[i] = (cell[2] * Y + cell[1]) * X + cell[0];
-    }
-    run(t, &scene, &s, &params, probes, COUNT, found);
-
-    const tyn_surfaces *f = &scene.surfaces;
-    tyn_graph_begin(t->graph);
-    tyn_ref maps[SHADOW_MAP_NUM_PORTS] = {
-        [SHADOW_MAP_PORT_TRIANGLES] =
-            gpu_buffer(t, "triangles", f->triangles, f->num_triangles * sizeof *f->triangles),
-        [SHADOW_MAP_PORT_VERTICES] =
-            gpu_buffer(t, "vertices", f->vertices, f->num_vertices * sizeof *f->vertices),
-    };
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_shadow_map, &params, maps), TYN_OK);
-    tyn_ref refs[LIGHT_CELLS_NUM_PORTS] = {
-        [LIGHT_CELLS_PORT_SHADOW_ATLAS] = maps[SHADOW_MAP_PORT_SHADOW_ATLAS],
-        [LIGHT_CELLS_PORT_SHADOWS] = maps[SHADOW_MAP_PORT_SHADOWS],
-    };
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_light_cells, &cells, refs), TYN_OK);
-    tyn_graph_output(t->graph, "cells", refs[LIGHT_CELLS_PORT_LIGHT_CELLS], true);
-    gpu_run(t);
-    const float *texels = gpu_map(t, "cells");
-    int dark[SUNS + LAMPS] = {0}, lit[SUNS + LAMPS] = {0}, wrong = 0;
-    for (int i = 0; i < COUNT; i++) {
-        const uint32_t bits = (uint32_t)texels[cell_of[i]];
-        const uint32_t seen = bits >> (2 * index_of(probes[i].light)) & 3;
-        dark[probes[i].light] += seen == TYN_LIGHT_CELLS_DARK;
-        lit[probes[i].light] += seen == TYN_LIGHT_CELLS_LIT;
-        const bool shines = in_cone(&l, probes[i].light, probes[i].world);
-        wrong += (seen == TYN_LIGHT_CELLS_DARK && found[i] != 0 && shines) ||
-                 (seen == TYN_LIGHT_CELLS_LIT && found[i] != 1) || seen > TYN_LIGHT_CELLS_LIT;
-    }
-    for (int n = 0; n < SUNS + LAMPS; n++) {
-        const double part = 100.0 * (SUNS + LAMPS) / COUNT;
-        print_message("light %d: %.0f %% dark, %.0f %% lit\n", n, part * dark[n], part * lit[n]);
-        // The lamps' rest is at edges of shadows, or on two faces of a cube.
-        assert_true(part * (dark[n] + lit[n]) > 20 && lit[n] > 0 && dark[n] > 0);
-    }
-    assert_int_equal(wrong, 0);
-    free(probes);
-    free(cell_of);
-    free(found);
-    tyn_scene_finish(&scene);
-}
-
 // Lights without maps shine through everything; an atlas for none is still there.
 static void no_lights(void **state)
 {
@@ -720,9 +642,11 @@ static void tiles_do_not_overlap(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_of_the_medium), cmocka_unit_test(points_of_the_surfaces),
-        cmocka_unit_test(edges_of_shadows),     cmocka_unit_test(insides_of_a_box),
-        cmocka_unit_test(cells_of_the_medium),  cmocka_unit_test(no_lights),
+        cmocka_unit_test(points_of_the_medium),
+        cmocka_unit_test(points_of_the_surfaces),
+        cmocka_unit_test(edges_of_shadows),
+        cmocka_unit_test(insides_of_a_box),
+        cmocka_unit_test(no_lights),
         cmocka_unit_test(tiles_do_not_overlap),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));

@@ -484,7 +484,6 @@ static void strengths_are_values(void **state)
         assert_int_equal(c.record, 'y');
         assert_null(strstr(c.ran, "medium"));
         assert_null(strstr(c.ran, "shadow_map"));
-        assert_null(strstr(c.ran, "light_cells"));
         assert_null(strstr(c.ran, "walls"));
         assert_null(strstr(c.ran, "lattice_cells"));
         assert_true(strncmp(c.ran, "beam", 4) != 0);

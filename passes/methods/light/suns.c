@@ -20,19 +20,6 @@ void tyn_add_beams(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_take(refs, BEAM_PORT_BEAMS, s->beams);
 }
 
-static void add_light_cells(tyn_graph *g, const tyn_job *job, tyn_sources *s)
-{
-    tyn_light_cells_params params;
-    tyn_settings_params(job->settings, &tyn_pass_light_cells, &params);
-    memcpy(params.extent, job->frame->medium.extent, sizeof params.extent);
-    params.num_suns = tyn_num_beams(&job->frame->lights);
-    params.num_lamps = job->frame->lights.num_lamps;
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-    tyn_connect(refs, LIGHT_CELLS_PORT_SHADOW_ATLAS, s->shadows);
-    tyn_graph_add(g, &tyn_pass_light_cells, &params, refs);
-    s->light_cells = refs[LIGHT_CELLS_PORT_LIGHT_CELLS];
-}
-
 void tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -56,7 +43,4 @@ void tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     };
     tyn_graph_add(g, &tyn_pass_shadow_map, &params, refs);
     tyn_take(refs, SHADOW_MAP_PORT_SHADOW_ATLAS, s->shadows);
-    if (!frame->empty && !tyn_is_periodic(frame)) {
-        add_light_cells(g, job, s);
-    }
 }

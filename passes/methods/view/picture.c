@@ -199,10 +199,6 @@ tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_input
     tyn_connect(refs, RAYMARCH_PORT_WALL_LINKS, in->sources->walls.cut);
     if (in->sources->num_suns || in->num_marched_lamps) { // light that surfaces may stop
         tyn_connect(refs, RAYMARCH_PORT_SHADOW_ATLAS, in->sources->shadows);
-        // A lamp that shines all around leaves little in the dark: the cubes would cost more than they save.
-        if (in->sources->num_suns || params.spots) {
-            refs[RAYMARCH_PORT_LIGHT_CELLS] = in->sources->light_cells;
-        }
     }
     tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[RAYMARCH_PORT_SINGLE]);

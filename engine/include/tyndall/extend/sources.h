@@ -82,7 +82,6 @@ typedef struct tyn_sources {
     uint32_t num_suns;       // that have beams: the first of tyn_lights.suns
     tyn_beam_refs beams;     // optical depths along them
     tyn_shadow_refs shadows; // what surfaces hide of suns and lamps
-    tyn_ref light_cells;     // where looks at the shadow maps are needed (light_cells_args.h)
     tyn_lamps lamps;
     tyn_sky sky;
     bool mean_from_all_sides; // the mean of the environment enters the lattice
@@ -156,10 +155,10 @@ typedef struct tyn_rsm_view {
 TYN_API void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_view *views,
                                uint32_t count, uint32_t texels, tyn_rsm_refs *maps);
 
-// The passes of these calls, for a method's table: TYN_SUN_PASSES(TYN_PASS_NAME) is "beam", "shadow_map", "light_cells"
+// The passes of these calls, for a method's table: TYN_SUN_PASSES(TYN_PASS_NAME) is "beam", "shadow_map"
 // (method.h).
 #define TYN_MEDIUM_PASSES(X) X(medium)
-#define TYN_SUN_PASSES(X) X(beam), X(shadow_map), X(light_cells)
+#define TYN_SUN_PASSES(X) X(beam), X(shadow_map)
 #define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
 #define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates), X(sky_shadows)

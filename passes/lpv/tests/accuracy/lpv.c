@@ -374,13 +374,13 @@ static void skips(void **state)
     bool right = true;
     gpu_test *t = *state;
     static const char *const expected[] = {
-        "beam radial_beam radial_lights shadow_map light_cells walls lattice_source lattice_lamps "
+        "beam radial_beam radial_lights shadow_map walls lattice_source lattice_lamps "
         "rsm "
         "lpv_reflect "
         "lpv merge gbuffer shade raymarch",
         "",
         "merge gbuffer shade raymarch",
-        "beam shadow_map light_cells lattice_source lattice_lamps rsm lpv_reflect lpv merge shade "
+        "beam shadow_map lattice_source lattice_lamps rsm lpv_reflect lpv merge shade "
         "raymarch",
         "beam radial_beam radial_lights lattice_source lattice_lamps lpv_reflect lpv merge shade "
         "raymarch",
