@@ -16,11 +16,6 @@ static const tyn_param params_table[] = {
     {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 2, 0.05, 100, "",
      "how evenly ordinates are placed: uniform weight, in means of the sky; a quarter if not "
      "split"},
-    {"importance", TYN_PARAM_ENUM, offsetof(tyn_ordinates_params, importance),
-     ORDINATES_IMPORTANCE_AUTO, 0, 2, "",
-     "weight directions with their importance for the picture; auto: where the method "
-     "places them anew for every camera",
-     (const char *const[]){"off", "on", "auto"}},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

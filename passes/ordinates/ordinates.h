@@ -9,8 +9,6 @@
 #include "shaders/light/ordinate_args.h"
 
 enum { ORDINATES_MAX_FIXED = 68 };
-enum { ORDINATES_IMPORTANCE_OFF, ORDINATES_IMPORTANCE_ON, ORDINATES_IMPORTANCE_AUTO };
-
 // Of `spread`, without `split`. Less the mean of the sky, ordinates carry its contrast, and of that dark regions have as much
 // as bright ones; all its light is worth to be followed closer.
 #define ORDINATES_SPREAD_OF_ALL 0.25f
@@ -21,8 +19,6 @@ typedef struct tyn_ordinates_params {
     uint32_t split; // 1: the mean of the sky (env_block.sky) is not in them
     float fold; // ordinates below this part of all light are folded into a neighbour; < 0: none is
     float spread; // see ordinates_args.h
-    int32_t
-        importance; // ORDINATES_IMPORTANCE_*: does the method weight directions with their importance?
     // Set by the method, 1 or a power of two: `count` is of regions that are cut into so many parts each, which are ordinates.
     uint32_t fan;
     uint32_t num_fixed; // set by the method: ready-made ordinates that come first

@@ -6,7 +6,29 @@
 // method "pop".
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
+#include "importance/importance.h"
 #include "solve.h"
+
+// Where light counts for the picture (section 5.2 of the paper).
+static void add_importance(tyn_graph *g, const tyn_job *job, tyn_sources *s)
+{
+    tyn_importance_params params;
+    tyn_settings_params(job->settings, &tyn_pass_importance, &params);
+    if (!params.on || !tyn_is_lit(job->frame->environment.sky) ||
+        !(job->outputs & TYN_PICTURE_OUTPUTS)) {
+        return;
+    }
+    params.mode = job->frame->medium.mode;
+    params.time = params.smoothing > 0.0f ? (uint32_t)job->view->time_index : 0;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [IMPORTANCE_PORT_CAMERA] = job->refs.camera,
+        [IMPORTANCE_PORT_HISTORY] = tyn_graph_history_buffer(
+            g, "importance_history", sizeof(struct importance_history), job->view->cut),
+    };
+    tyn_connect(refs, IMPORTANCE_PORT_MEDIUM, s->medium);
+    tyn_graph_add(g, &tyn_pass_importance, &params, refs);
+    s->sky.importance = refs[IMPORTANCE_PORT_IMPORTANCE];
+}
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
@@ -27,7 +49,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     tyn_job_warn_surfaces(job, "stop light that goes straight alone, not what the medium scatters");
     tyn_add_medium(g, job, &s);
-    s.sky.follows_camera = true; // its section 5.2
+    add_importance(g, job, &s);
     tyn_add_sky(g, job, 0, false, &s);
     tyn_add_vpls(g, job, &s);
     tyn_sources shadowed = s;

@@ -8,7 +8,7 @@
 #include "upsample/upsample.h"
 
 #define TYN_PROPAGATION_PASSES                                                                     \
-    "propagate_rect", "propagate_radial", "residuum", "merge_grids", "upsample"
+    "importance", "propagate_rect", "propagate_radial", "residuum", "merge_grids", "upsample"
 
 // The light of each sun, ordinate and lamp of `s` and of its virtual point lights, scattered or not; merged towards the
 // eye and upsampled with the medium as guide. `field` stays as it is where nothing shines.

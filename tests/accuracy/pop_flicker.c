@@ -282,9 +282,7 @@ static void motion_of(gpu_test *t, motion m)
 {
     static frames a, b, p, smooth;
     static cubic_fit of_pop;
-    static const char *const settings[] = {"ordinates.importance=off", "ordinates.importance=on",
-                                           "ordinates.importance=off ordinates.count=16",
-                                           "ordinates.importance=on ordinates.count=16"};
+    static const char *const settings[] = {"", "ordinates.count=16"};
     assert_true(uses_ordinates("pop"));
     tyn_scene *scene = malloc(sizeof *scene);
     tyn_scene_init(scene);
@@ -301,7 +299,7 @@ static void motion_of(gpu_test *t, motion m)
     double noise = sqrt(product(&a, &b, &a, &b) / 2) / mean;
     print_message("%s: path %.2f %% (noise of one run %.2f)\n", motions[m], 100 * path,
                   100 * noise);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 2; i++) {
         render(t, "pop", settings[i], scene, m, 0, &p);
         fit(&p, &of_pop);
         unfold(&of_pop, &smooth);

@@ -31,25 +31,6 @@ tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job, bool suns)
     return sums;
 }
 
-// Where light counts for the picture; nothing without a camera.
-static void add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                           bool scaled, tyn_ref *map)
-{
-    tyn_importance_params params;
-    tyn_settings_params(job->settings, &tyn_pass_importance, &params);
-    params.mode = job->frame->medium.mode;
-    params.scaled = scaled;
-    params.time = params.smoothing > 0.0f ? (uint32_t)job->view->time_index : 0;
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [IMPORTANCE_PORT_CAMERA] = job->refs.camera,
-        [IMPORTANCE_PORT_HISTORY] = tyn_graph_history_buffer(
-            g, "importance_history", sizeof(struct importance_history), job->view->cut),
-    };
-    tyn_connect(refs, IMPORTANCE_PORT_MEDIUM, *medium);
-    tyn_graph_add(g, &tyn_pass_importance, &params, refs);
-    *map = refs[IMPORTANCE_PORT_IMPORTANCE];
-}
-
 // A sun as an ordinate: a cone with its mean cosine.
 static struct ordinate ordinate_of_sun(const struct light_block *sun)
 {
@@ -130,11 +111,8 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
         add_env_importance(g, job, false, &sky->map, &refs[ORDINATES_PORT_SUMS]);
         refs[ORDINATES_PORT_SKY] = sky->map;
     }
-    bool picture = job->outputs & TYN_PICTURE_OUTPUTS && !frame->empty;
-    bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
-                    (params.importance == ORDINATES_IMPORTANCE_AUTO && sky->follows_camera);
-    if (regions && picture && weighted) {
-        add_importance(g, job, &s->medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
+    if (regions) {
+        refs[ORDINATES_PORT_IMPORTANCE] = sky->importance;
     }
     if (directions) {
         params.fold = -1.0f; // so that directions are found in the order of the ordinates

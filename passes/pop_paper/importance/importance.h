@@ -14,6 +14,7 @@ typedef struct tyn_importance_params {
     int32_t iterations; // hops from cell to cell, 1..128
     float smoothing;    // weight of the frames before, 0..0.95
     float floor;        // least value of the map, whose mean is 1
+    uint32_t on;        // 1: ordinates are weighted with it
     uint32_t mode;      // set by the method: TYN_MEDIUM_*
     uint32_t scaled; // set by the method: 1 = scattering within the delta of the delta-scaled phase
                      // function is not scattering (it reaches the eye by other ways than ordinates)

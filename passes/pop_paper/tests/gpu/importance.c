@@ -3,7 +3,7 @@
 #include "bound.h"
 #include "gpu_test.h"
 #include "importance_twin.h"
-#include "passes/importance/importance.h"
+#include "passes/pop_paper/importance/importance.h"
 #include "shaders/common/scene_args.h"
 #include "numbers.h"
 #include "vector.h"

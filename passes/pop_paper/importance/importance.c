@@ -7,6 +7,8 @@
 
 #define FIELD_OF(name) offsetof(tyn_importance_params, name)
 static const tyn_param params[] = {
+    {"on", TYN_PARAM_BOOL, FIELD_OF(on), 1, 0, 1, "",
+     "weight directions of the environment with their importance for the picture"},
     {"cells", TYN_PARAM_INT, FIELD_OF(cells), 16, 8, 32, "cells",
      "along each side of the grid in the camera's pyramid"},
     {"iterations", TYN_PARAM_INT, FIELD_OF(iterations), 16, 1, 128, "",
@@ -64,7 +66,7 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_importance = {
     .name = "importance",
     .summary = "directions whose light matters for the picture (Elek 2014, section 5.2)",
-    .serves = "ordinates that follow what the camera sees (ordinates.importance)",
+    .serves = "ordinates that follow what the camera sees (importance.on)",
     TYN_PASS_TABLES(tyn_importance_params),
     TYN_SETTINGS(params),
     .debug_port = PORT(IMPORTANCE),
