@@ -79,7 +79,6 @@ static int open_renderer(app *a, render_job *job)
 static int open_method(app *a, render_job *job)
 {
     const render_args *args = job->args;
-    job->how.sequence = job->numbered;
     if (job->until > 0) {
         until_method(job->until, &job->how);
     }

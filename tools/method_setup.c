@@ -121,9 +121,6 @@ int method_open(app *a, const method_options *options, method *m)
             result = tyn_settings_set(m->settings, "refine.bias", bias, &a->log);
         }
     }
-    if (result == TYN_OK && options->sequence) {
-        result = tyn_settings_set(m->settings, "lattice.warm", "1", &a->log);
-    }
     if (result == TYN_OK && options->quality) {
         result = tyn_settings_quality(m->settings, options->quality, &a->log);
     }

@@ -11,7 +11,6 @@ typedef struct method_options {
     float until;        // relative error that is asked for; 0: none
     uint32_t seed, max_depth, rr_depth;
     uint32_t memory_budget; // MiB; 0 = no limit
-    bool sequence; // the pictures are one after another: a solve starts from the last one's
 } method_options;
 extern const option method_table[];
 enum { METHOD_TABLE_SIZE = 9 };

@@ -293,7 +293,7 @@ static void record(tyn_recorder *r, const void *params)
                  .tint = {p->shape.tint[0], p->shape.tint[1], p->shape.tint[2]},
                  .dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells,
                  .lines = lines_of(dims),
-                 .warm = tyn_rec_has(r, LATTICE_PORT_GUESS)},
+                 .guess = tyn_rec_has(r, LATTICE_PORT_GUESS)},
     };
     s.args.stride = s.levels.cells;
     s.walls[0] = tyn_rec_has(r, LATTICE_PORT_WALL_LINKS);
@@ -354,8 +354,6 @@ static const tyn_param param_table[] = {
      NULL},
     {"anderson", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, anderson), 1, 0, 1, "",
      "mix the results of the last three sweeps (Anderson acceleration)", NULL},
-    {"warm", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, warm), 0, 0, 1, "",
-     "start from the last frame's solution: for sequences", NULL},
 };
 
 const tyn_pass_desc tyn_pass_lattice = {

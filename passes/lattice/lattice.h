@@ -6,8 +6,6 @@
 //   lattice_ordinates  light of the sky's principal ordinates (... or the environment)
 //   lattice_lamps   unscattered light of lamps and surfaces    (... or a lamp)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
-// and two around the last for sequences: lattice_recall brings the last frame's solution to this
-// frame's cells, lattice_keep puts this frame's away.
 // None of them depends on the camera.
 //
 // Coefficients are those of delta scaling: f = g^2 for g > 0, else 0; g' = (g - f) / (1 - f),
@@ -23,7 +21,6 @@ typedef struct tyn_lattice_params {
     int32_t sweeps;          // 1..256
     int32_t cycles;          // V-cycles of the diffusion correction after each sweep, 0..8
     uint32_t anderson;       // 1: mix the last three sweeps
-    uint32_t warm;           // for the method: 1 = add lattice_recall and lattice_keep
 } tyn_lattice_params;
 
 // clang-format off
@@ -32,7 +29,7 @@ typedef struct tyn_lattice_params {
     X(LATTICE, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
     X(LATTICE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
         "struct env_block: its mean without suns enters at the box"), \
-    X(LATTICE, GUESS, guess, OPTIONAL, BUFFER, "of lattice_recall or lattice_ordinates: where the solve starts"), \
+    X(LATTICE, GUESS, guess, OPTIONAL, BUFFER, "of lattice_ordinates: where the solve starts"), \
     TYN_WALLS(X##_OPTIONAL, LATTICE), \
     X(LATTICE, WALL_LIGHT, wall_light, OPTIONAL, BUFFER, \
         "vec3[cell]: radiance that a cell's walls send out beside what they reflect of the lattice's light, " \

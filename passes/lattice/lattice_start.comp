@@ -1,5 +1,5 @@
 // lattice_start.comp -- the first guess: the environment everywhere as if unhindered, no sunlight; or
-// what lattice_recall brought.
+// what lattice_ordinates found.
 //
 // In a medium that only scatters, inside a uniform environment, the former is already the solution. Among
 // walls it is dark: what no light reaches stays so.
@@ -28,9 +28,9 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    vec4 m = args.warm == 1 ? guess[i] : lattice_unhindered(args.channels, ch, args.tint);
+    vec4 m = args.guess == 1 ? guess[i] : lattice_unhindered(args.channels, ch, args.tint);
     if (walls == 1) {
-        m = args.warm == 1 ? m : vec4(0.0);
+        m = args.guess == 1 ? m : vec4(0.0);
         uint cell = i - ch * lattice_all_cells();
         uint vector = lattice_wall_vector(ch, cell);
         float sent = lit_walls == 1 ? lattice_channel(wall_light[cell], args.channels, ch, args.tint) : 0.0;

@@ -58,32 +58,13 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uint stride;   // cells of all levels of the diffusion grid
     tyn_uint history;  // residual, weights, mix: earlier sweeps that there are, 0..2
     tyn_uint anderson; // weights: 1 = they are mixed in
-    tyn_uint warm;     // start: 1 = from the guess
+    tyn_uint guess;    // start: 1 = from the guess
     // Vectors of the state per channel: cells, then the radiance of their walls by fours.
     tyn_uint elements;
     tyn_uint corrected; // residual: 1 = there is a diffusion correction
     tyn_uvec3 repeat;   // sweep: periodic axes
     tyn_uint march;     // sweep: axis from whose planes diagonal lines start; not a periodic one
 };
-
-struct lattice_recall_args {
-    tyn_vec4 world[3]; // M -> world: world_i = dot(world[i].xyz, p) + world[i].w
-    tyn_vec3 extent;   // of the medium, m
-    tyn_uvec3 dims;
-    tyn_uint channels;
-    tyn_vec3 tint;
-};
-
-// Head of the buffer in which a solution outlives its frame; the moments of its cells follow.
-struct lattice_memory_block {
-    tyn_vec4 world[3]; // its M -> world
-    tyn_vec3 extent;
-    tyn_uvec3 dims;
-    tyn_uint channels; // 0: there is none yet
-    tyn_vec3 tint;
-    tyn_vec3 power; // what light and emission put into the cells, by channel; a measure, no unit
-};
-TYN_ASSERT_SIZE(lattice_memory_block, 100);
 
 struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uvec3 dims;         // of level 0

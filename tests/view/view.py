@@ -629,7 +629,7 @@ def test_sequence(screen, work):
     viewer.settled()
     viewer.key("comma", "comma", "comma")
     first = viewer.settled()
-    expected = render(work, os.path.join(work, "cube-0001.gltf"), "-D", "lattice.warm=1")
+    expected = render(work, os.path.join(work, "cube-0001.gltf"))
     check(difference(first, expected) < 1, f"its first picture is {difference(first, expected):.2f} off render's")
     # What is dropped and cannot be read leaves the sequence as it is; a map lights it.
     broken, sky = os.path.join(work, "broken.gltf"), os.path.join(SCENES, "sky.hdr")
@@ -641,7 +641,7 @@ def test_sequence(screen, work):
     check(difference(third, first) > 1, "a broken scene that is dropped ends the sequence")
     viewer.drop(sky)
     for number in [3, 1]:
-        expected = render(work, os.path.join(work, f"cube-{number:04d}.gltf"), sky, "-D", "lattice.warm=1")
+        expected = render(work, os.path.join(work, f"cube-{number:04d}.gltf"), sky)
         shown = viewer.settled(like=expected)
         keep(f"sequence-map-{number}", shown)
         check(difference(shown, expected) < 1, f"picture {number} under a map: {difference(shown, expected):.2f} off render's")

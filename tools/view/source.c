@@ -103,7 +103,6 @@ int source_open(viewer *v)
     }
     v->number = v->sequence.first;
     v->playing = v->sequence.numbered;
-    v->how.sequence = v->sequence.numbered;
     const int code = load(v, &v->source, &v->scene);
     v->loaded = v->scene;
     watch_source(v);

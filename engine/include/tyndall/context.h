@@ -139,7 +139,7 @@ typedef struct tyn_view {
     // Frame number of a sequence: importance.smoothing takes a step when it changes.
     uint64_t time_index;
     uint32_t cut; // another number forgets what earlier frames left (importance.smoothing,
-                  // lattice.warm, refine.carry): for another scene, or a camera that jumps
+                  // refine.carry): for another scene, or a camera that jumps
 } tyn_view;
 
 // Images of the host that take results: as large as the view, one sample a pixel, STORAGE. What was in them is lost, so

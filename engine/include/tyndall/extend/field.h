@@ -33,7 +33,7 @@ typedef struct tyn_field {
 // The solver of "pop": moments of all light on the lattice that tyn_add_cells has filled.
 TYN_API void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
                                tyn_field *field);
-#define TYN_LATTICE_PASSES(X) X(lattice_recall), X(lattice), X(lattice_keep)
+#define TYN_LATTICE_PASSES(X) X(lattice)
 
 #ifdef __cplusplus
 }
