@@ -11,8 +11,6 @@ static const tyn_param params_table[] = {
      "principal ordinates of the environment"},
     {"split", TYN_PARAM_BOOL, offsetof(tyn_ordinates_params, split), 1, 0, 1, "",
      "light the lattice with the sky's mean and the ordinates with the rest"},
-    {"fold", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, fold), 1e-4, 0, 2e-3, "",
-     "part of all light below which an ordinate is folded into its neighbour"},
     {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 2, 0.05, 100, "",
      "how evenly ordinates are placed: uniform weight, in means of the sky; a quarter if not "
      "split"},
@@ -23,7 +21,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     (void)params;
     tyn_build_buffer(b, ORDINATES_PORT_ORDINATES, sizeof(struct ordinates_block));
     tyn_build_buffer(b, ORDINATES_PORT_REGIONS, 4 * sizeof(float) * TYN_ORDINATES_MAX);
-    tyn_build_buffer(b, ORDINATES_PORT_PIECES, sizeof(struct ordinates_piece) * TYN_ORDINATES_MAX);
     if (tyn_build_has(b, ORDINATES_PORT_IMPORTANCE)) {
         tyn_build_buffer(b, ORDINATES_PORT_WEIGHTS,
                          sizeof(float) * (SKY_SUMS_WIDTH + 1) * (SKY_SUMS_HEIGHT + 1));
@@ -42,17 +39,17 @@ static void record(tyn_recorder *r, const void *params)
         .num_fixed = p->num_fixed,
         .split = p->split,
         .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
-        .fold = p->fold,
         .spread = p->split ? p->spread : ORDINATES_SPREAD_OF_ALL * p->spread,
     };
-    struct ordinates_block block = {.count = 0};
+    struct ordinates_block block = {.count = p->num_fixed + args.regions,
+                                    .num_fixed = p->num_fixed};
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
     tyn_rec_update(r, ORDINATES_PORT_ORDINATES, 0, &block, sizeof block);
     if (args.weighted) {
         TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
         TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1});
     }
-    static const uint32_t steps[] = {KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD};
+    static const uint32_t steps[] = {KERNEL_PARTITION, KERNEL_GATHER};
     for (uint32_t i = 0; i < TYN_COUNT(steps); i++) {
         TYN_DISPATCH(r, .kernel = steps[i], .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args);
     }
@@ -61,7 +58,6 @@ static void record(tyn_recorder *r, const void *params)
 
 static const tyn_counter counters[] = {
     {"ordinates", offsetof(struct ordinates_block, count)},
-    {"folded", offsetof(struct ordinates_block, folded)},
     {NULL},
 };
 

@@ -17,8 +17,7 @@ typedef struct tyn_ordinates_params {
     int32_t count; // regions, 1..256, or 0 if the method has nothing but fixed ones; fewer if there
                    // are too many of those
     uint32_t split; // 1: the mean of the sky (env_block.sky) is not in them
-    float fold; // ordinates below this part of all light are folded into a neighbour; < 0: none is
-    float spread; // see ordinates_args.h
+    float spread;   // see ordinates_args.h
     // Set by the method, 1 or a power of two: `count` is of regions that are cut into so many parts each, which are ordinates.
     uint32_t fan;
     uint32_t num_fixed; // set by the method: ready-made ordinates that come first
@@ -33,8 +32,6 @@ typedef struct tyn_ordinates_params {
     X(ORDINATES, IMPORTANCE, importance, OPTIONAL, IMAGE_2D, "by the direction light comes from, frame M, mean 1"), \
     X(ORDINATES, ORDINATES, ordinates, OUT, BUFFER, "struct ordinates_block"), \
     X(ORDINATES, WEIGHTS, weights, SCRATCH, BUFFER, "sums of luminance x importance over rectangles"), \
-    X(ORDINATES, REGIONS, regions, SCRATCH, BUFFER, "vec4[TYN_ORDINATES_MAX]: corners on the map"), \
-    X(ORDINATES, PIECES, pieces, SCRATCH, BUFFER, \
-        "struct ordinates_piece[TYN_ORDINATES_MAX]: what comes from them before folding")
+    X(ORDINATES, REGIONS, regions, SCRATCH, BUFFER, "vec4[TYN_ORDINATES_MAX]: corners on the map")
 // clang-format on
 TYN_PASS(ORDINATES, ordinates);

@@ -6,18 +6,7 @@ struct ordinates_args {
     tyn_uint num_fixed; // in front of the list
     tyn_uint split;     // 1: what is above or below the mean of the sky; 0: all light
     tyn_uint weighted;  // 1: regions follow importance, too
-    float
-        fold; // part of the light below which an ordinate is folded away; < 0: none is, not even one without light
-    float spread; // of the mean luminance, added where regions are placed
+    float spread;       // of the mean luminance, added where regions are placed
     tyn_uint fan; // so many regions in a row are a region of the partition for 1 / fan as many
 };
-TYN_ASSERT_SIZE(ordinates_args, 28);
-
-struct ordinates_piece { // what comes from a region, before folding
-    tyn_vec3 light;      // W/m^2
-    float size;          // luminance of its absolute value
-    tyn_vec3 moment;     // towards where it comes from, map frame; any length
-    float solid_angle;
-    tyn_vec3 outwards; // integral of the direction over the region, map frame
-};
-TYN_ASSERT_SIZE(ordinates_piece, 44);
+TYN_ASSERT_SIZE(ordinates_args, 24);

@@ -1,4 +1,4 @@
-// ordinates_gather.comp -- what comes from each region; a thread per region.
+// ordinates_gather.comp -- the ordinate of each region; a thread per region.
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"
@@ -9,7 +9,7 @@ TYN_ARGS(ordinates_args args);
 TYN_UNIFORM(0, environment, env_block environment);
 TYN_READ(1, sums, sky_sum sums[]);
 TYN_READ(2, regions, vec4 regions[]); // from, to
-TYN_WRITE(3, pieces, ordinates_piece pieces[]);
+TYN_WRITE(3, ordinates, uint count; uint num_fixed; uvec2 pad; ordinate list[]);
 
 // All of it: xyz power, w luminance; and the moment.
 void add_corner(vec2 p, float sign, inout vec4 power, inout vec3 moment)
@@ -40,6 +40,13 @@ vec3 direction_of_light(float luminance, vec3 moment, float solid_angle, vec3 ou
     return r * (moment - outwards) + (1.0 - r * r) * (moment + outwards);
 }
 
+// The direction of a moment; where there is none, any.
+vec3 middle_of(vec3 moment)
+{
+    float size = length(moment);
+    return size > 0.0 ? moment / size : vec3(0.0, 1.0, 0.0);
+}
+
 void main()
 {
     const uint n = gl_GlobalInvocationID.x;
@@ -65,6 +72,14 @@ void main()
     }
     vec3 light = environment.radiance * power.rgb;
     light -= args.split != 0u ? environment.sky * solid_angle : vec3(0.0);
-    pieces[n] = ordinates_piece(light, sky_luminance(abs(light)), moment, solid_angle,
-                                outwards);
+    const mat3 to_m =
+        mat3(environment.rows[0].xyz, environment.rows[1].xyz, environment.rows[2].xyz);
+    ordinate o;
+    o.irradiance = light;
+    o.direction = to_m * -middle_of(moment);
+    o.solid_angle = solid_angle;
+    o.even = solid_angle;
+    o.even_flux = to_m * -outwards;
+    o.mean_cosine = clamp(1.0 - solid_angle / (4.0 * SKY_PI), 0.0, 1.0);
+    list[args.num_fixed + n] = o;
 }

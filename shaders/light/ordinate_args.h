@@ -17,9 +17,8 @@ struct ordinate {
     float mean_cosine;
     // Of travel, M, unit: the opposite of the region's energy-weighted mean direction.
     tyn_vec3 direction;
-    float solid_angle; // of its cone, sr: its region's, or the mean of those folded into it
-    // What an even radiance of 1 from its region and those folded into it gives: 4 pi and 0 over all
-    // ordinates; of suns 0.
+    float solid_angle; // of its cone, sr: its region's
+    // What an even radiance of 1 from its region gives: 4 pi and 0 over all ordinates; of suns 0.
     float even;
     tyn_vec3 even_flux; // M
 };
@@ -27,9 +26,8 @@ TYN_ASSERT_SIZE(ordinate, 48);
 
 struct ordinates_block { // uniform or storage buffer "ordinates"; the tail beyond `count` is zero
     tyn_uint count;      // in use, 0 to TYN_ORDINATES_MAX
-    tyn_uint folded;     // whose light was too little to matter and is carried by a neighbour
     tyn_uint num_fixed;  // the first ones: suns that have no aligned grid of full resolution
-    tyn_uint pad;
+    tyn_uvec2 pad;
     TYN_STRUCT(ordinate) list[TYN_ORDINATES_MAX];
 };
 TYN_ASSERT_SIZE(ordinates_block, 12304);

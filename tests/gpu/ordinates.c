@@ -1,5 +1,5 @@
 // ordinates.c -- principal ordinates of analytic maps: partitions of light and of the sphere, against a
-// tree in double; folding, fixed ones, and how they move when things change a little.
+// tree in double; fixed ones, and how they move when things change a little.
 #include "bound.h"
 #include "gpu_test.h"
 #include "passes/env_importance/env_importance.h"
@@ -142,13 +142,12 @@ static struct ordinates_block run(gpu_test *t, const scene *s, const tyn_ordinat
     return block;
 }
 
-static tyn_ordinates_params defaults(int count, bool split, float fold)
+static tyn_ordinates_params defaults(int count, bool split)
 {
     static tyn_ordinates_params p;
     tyn_pass_defaults(&tyn_pass_ordinates, &p);
     p.count = count;
     p.split = split;
-    p.fold = fold;
     return p;
 }
 
@@ -179,7 +178,7 @@ static void partitions(void **state)
         for (int k = 0; k < 16; k++) {
             const bool split = k & 1;
             const int n = counts[k / 2];
-            tyn_ordinates_params params = defaults(n, split, 0);
+            tyn_ordinates_params params = defaults(n, split);
             const struct ordinates_block b = run(t, &s, &params);
             double sum[3], size[3], solid_angle = 0, got[3] = {0, 0, 0};
             integrals(&s, split, sum, size);
@@ -207,7 +206,6 @@ static void partitions(void **state)
                 continue;
             }
             assert_int_equal(b.count, n);
-            assert_int_equal(b.folded, 0);
             assert_true(fabs(solid_angle / (4 * M_PI) - 1) < 1e-5);
             for (int c = 0; c < 3; c++) {
                 double error = fabs(got[c] - sum[c]) / size[c];
@@ -442,7 +440,7 @@ static void against_twin(void **state)
             const int n = counts[k / 4];
             const bool split = k & 2;
             s.importance = k & 1 ? importance : NULL;
-            const tyn_ordinates_params params = defaults(n, split, 0);
+            const tyn_ordinates_params params = defaults(n, split);
             const struct ordinates_block b = run(t, &s, &params);
             const double spread = (split ? 1 : 0.25) * params.spread;
             make_twin(&s, spread, false, &base);
@@ -488,7 +486,7 @@ static void against_twin(void **state)
     }
 }
 
-// ---- folding, fixed ones ----------------------------------------------------------------------
+// ---- fixed ones -------------------------------------------------------------------------------
 
 static double size_of(const struct ordinate *o)
 {
@@ -512,80 +510,11 @@ static double degrees_between(const struct ordinate *a, const struct ordinate *b
     return atan2(sqrt(cross), dot) * 180 / M_PI;
 }
 
-static void folding(void **state)
-{
-    gpu_test *t = *state;
-    const scene s = make_scene(WINDOWS, 0.3);
-    for (int n = 16; n <= 256; n *= 4) {
-        tyn_ordinates_params params = defaults(n, false, 0);
-        const struct ordinates_block all = run(t, &s, &params);
-        params.fold = 1e-3f;
-        const struct ordinates_block b = run(t, &s, &params);
-        double total = 0, sum[3] = {0, 0, 0};
-        for (int i = 0; i < n; i++) {
-            total += size_of(&all.list[i]);
-        }
-        // Whoever is too small goes to the nearest of the others; those keep their order.
-        int keepers[TYN_ORDINATES_MAX], kept = 0;
-        struct {
-            double light[3], towards[3], size, angle;
-        } expected[TYN_ORDINATES_MAX] = {{{0}}};
-        for (int i = 0; i < n; i++) {
-            if (size_of(&all.list[i]) > 1e-3 * total) {
-                keepers[kept++] = i;
-            }
-        }
-        for (int i = 0; i < n; i++) {
-            const struct ordinate *o = &all.list[i];
-            int nearest = 0;
-            for (int k = 1; k < kept; k++) {
-                double now = degrees_between(o, &all.list[keepers[nearest]]);
-                nearest = degrees_between(o, &all.list[keepers[k]]) < now ? k : nearest;
-            }
-            double luminance = 0;
-            for (int c = 0; c < 3; c++) {
-                expected[nearest].light[c] += o->irradiance[c];
-                sum[c] += o->irradiance[c];
-                luminance += weights[c] * o->irradiance[c] / s.env.radiance[c];
-            }
-            for (int c = 0; c < 3; c++) {
-                expected[nearest].towards[c] += luminance * o->direction[c];
-            }
-            expected[nearest].size += size_of(o);
-            expected[nearest].angle += size_of(o) * o->solid_angle;
-        }
-        printf("%d ordinates: %u in use, %u folded\n", n, b.count, b.folded);
-        assert_int_equal(b.count, kept);
-        assert_int_equal(b.folded, n - kept);
-        assert_true(n < 256 || b.folded > 0);
-        double covered = 0, flux[3] = {0, 0, 0};
-        for (int k = 0; k < kept; k++) {
-            const struct ordinate *o = &b.list[k];
-            struct ordinate towards = {.solid_angle = 0};
-            for (int c = 0; c < 3; c++) {
-                assert_true(fabs(o->irradiance[c] - expected[k].light[c]) < 1e-5 * sum[c]);
-                towards.direction[c] = (float)expected[k].towards[c];
-            }
-            double angle = expected[k].angle / expected[k].size;
-            assert_true(degrees_between(o, &towards) < 1);
-            assert_true(fabs(o->solid_angle / angle - 1) < 1e-4);
-            assert_true(fabs(o->mean_cosine - (1 - o->solid_angle / (4 * M_PI))) < 1e-6);
-            covered += o->even;
-            for (int c = 0; c < 3; c++) {
-                flux[c] += o->even_flux[c];
-            }
-        }
-        assert_true(fabs(covered / (4 * M_PI) - 1) < 1e-5); // folded regions are with their heirs
-        assert_true(fabs(flux[0]) + fabs(flux[1]) + fabs(flux[2]) < 1e-4);
-        assert_true(b.list[b.count].solid_angle == 0);
-    }
-}
-
 static void fixed(void **state)
 {
     gpu_test *t = *state;
     const scene s = make_scene(SKY, 0.3);
-    tyn_ordinates_params params = defaults(256, true, 0);
+    tyn_ordinates_params params = defaults(256, true);
     for (int i = 0; i < ORDINATES_MAX_FIXED; i++) {
         params.fixed[i] = (struct ordinate){{(float)i, 1e-9f, 0}, 1, {0, 1, 0}, 0, 0, {0, 0, 0}};
     }
@@ -610,7 +539,6 @@ static void fixed(void **state)
     dark.constant = true; // connects nothing
     const struct ordinates_block b = run(t, &dark, &params);
     assert_int_equal(b.count, ORDINATES_MAX_FIXED);
-    assert_int_equal(b.folded, 0);
     assert_memory_equal(b.list, params.fixed, sizeof params.fixed);
     assert_true(b.list[b.count].solid_angle == 0);
 }
@@ -652,7 +580,7 @@ static void moves_little(void **state)
     }
     for (int kind = 0; kind < BLACK; kind++) {
         for (int n = 16; n <= 256; n *= 4) {
-            const tyn_ordinates_params params = defaults(n, true, 0);
+            const tyn_ordinates_params params = defaults(n, true);
             scene s = make_scene(kind, 0.3), turned = make_scene(kind, 0.3 + 0.5 * M_PI / 180);
             const struct ordinates_block plain = run(t, &s, &params);
             const struct ordinates_block plain_turned = run(t, &turned, &params);
@@ -684,8 +612,10 @@ static void moves_little(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(partitions), cmocka_unit_test(against_twin), cmocka_unit_test(folding),
-        cmocka_unit_test(fixed),      cmocka_unit_test(moves_little),
+        cmocka_unit_test(partitions),
+        cmocka_unit_test(against_twin),
+        cmocka_unit_test(fixed),
+        cmocka_unit_test(moves_little),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -114,9 +114,6 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     if (regions) {
         refs[ORDINATES_PORT_IMPORTANCE] = sky->importance;
     }
-    if (directions) {
-        params.fold = -1.0f; // so that directions are found in the order of the ordinates
-    }
     tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
     if (directions) {
