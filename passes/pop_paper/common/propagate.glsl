@@ -9,7 +9,7 @@
 #define TYN_PROPAGATE_GLSL
 #include "shaders/common/scene_args.h"
 #include "propagate_args.h"
-#include "shaders/beams/propagate_hop.glsl"
+#include "propagate_hop.glsl"
 #include "shaders/phase/hg.glsl"
 
 // ---- the grid -----------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // importance.glsl -- the grid in the camera's pyramid, and directions of the importance map.
 // No bindings.
 #include "shaders/common/scene_args.h"
-#include "shaders/beams/propagate_hop.glsl"
+#include "../common/propagate_hop.glsl"
 #include "importance_args.h"
 
 const float IMPORTANCE_PI = 3.14159265358979;
