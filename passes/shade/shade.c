@@ -90,7 +90,6 @@ static void record(tyn_recorder *r, const void *data)
     features |= vpls ? SHADE_VPLS : 0;
     features |= tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_LATTICE : 0;
     features |= p->outside && tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_OUTSIDE : 0;
-    features |= tyn_rec_has(r, PORT(AROUND_LINKS)) ? SHADE_AROUND : 0;
     features |= p->one_channel ? SHADE_ONE_CHANNEL : 0;
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;

@@ -50,8 +50,6 @@ typedef struct tyn_shade_params {
     TYN_VPLS(X##_OPTIONAL, SHADE), \
     X(SHADE, MOMENTS, moments, OPTIONAL, IMAGE_3D, "fluence and flux on the lattice, W/m^2"), \
     TYN_WALLS(X##_OPTIONAL, SHADE), \
-    X(SHADE, AROUND_LINKS, around_links, OPTIONAL, BUFFER, "of walls_beyond: wall_links"), \
-    X(SHADE, AROUND_CELLS, around_cells, OPTIONAL, BUFFER, "wall_cells"), \
     X(SHADE, ROOMS, rooms, OPTIONAL, BUFFER, "rooms.h: with walls and VPLs"), \
     TYN_GEOMETRY(X, SHADE), \
     TYN_MATERIALS(X, SHADE), \

@@ -21,7 +21,6 @@
 #define SHADE_SKY_MAPS                                                                             \
     (1u << 11)                   // the sky's light comes along ordinates, past what their maps show
 #define SHADE_COLUMNS (1u << 12) // ... and through the medium
-#define SHADE_AROUND (1u << 13)  // surfaces around the lattice send light back into it
 
 // Light of which the pixels of a pattern each take a part.
 #define SHADE_SHARED (SHADE_VPLS | SHADE_SKY_MAPS)

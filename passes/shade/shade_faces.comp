@@ -1,14 +1,12 @@
 // shade_faces.comp -- what leaves the medium's box, for the surfaces outside it: into the image of shade_faces.h.
 //
 // A thread a patch. Light that a cell at the box's face sends out is the net flux there, on the line through the
-// fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Where surfaces close by send light
-// back (walls_beyond) what leaves is more than the net flux by that: their albedo times their share of phi / 4 + F.n / 2. Its
-// directions are those of radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
+// fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Its directions are those of
+// radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #include "shade_args.h"
 #include "shade_faces.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/lattice/lattice_sweep.glsl"
 #include "shaders/walls/walls_links.glsl"
 
 layout(local_size_x = 32) in;
@@ -20,28 +18,11 @@ TYN_UNIFORM(1, environment, env_block environment);
 layout(binding = 2) uniform sampler3D moments_tex;
 layout(binding = 3) uniform usamplerBuffer wall_links_words; // wall_links
 layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;
-TYN_READ(5, around_links, uint around_links[]);
-TYN_READ(6, around_cells, wall_cell around_cells[]);
 
 const float PI = 3.14159265358979;
 
 // A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
 #define has(feature) ((shade_features & (feature)) != 0u)
-
-// What of the light that leaves cell `index` outwards comes back from surfaces close by: those of the links that are cut
-// there, but not by walls of the lattice (`inner`).
-vec3 returns_of(int index, uint inner, ivec3 outwards)
-{
-    uint links = around_links[index] & ~inner;
-    float all = 0.0, cut = 0.0;
-    for (uint link = 0u; link < 14u; link++) {
-        float share = lattice_share(link);
-        share = dot(vec3(lattice_step(link)), vec3(outwards)) > 0.0 ? share : 0.0;
-        all += share;
-        cut += (links >> link & 1u) != 0u ? share : 0.0;
-    }
-    return cut / all * around_cells[index].albedo;
-}
 
 void main()
 {
@@ -79,7 +60,6 @@ void main()
             uint back = walls_link(-outwards);
             behind = (links >> back & 1u) != 0u ? c : behind;
             bool open = (links >> link & 1u) == 0u, lit = false;
-            vec3 returns = has(SHADE_AROUND) ? returns_of(index, links, outwards) : vec3(0.0);
             for (int ch = 0; ch < channels && open; ch++) {
                 ivec3 shift = ivec3(0, 0, ch * dims.z);
                 vec4 m = texelFetch(moments_tex, c + shift, 0), inner = texelFetch(moments_tex, behind + shift, 0);
@@ -88,8 +68,6 @@ void main()
                 lit = lit || m.x > 0.0;
                 float out_flux = dot(m.yzw, vec3(outwards));
                 vec3 tint = channels == 1 ? args.tint : vec3(ch == 0, ch == 1, ch == 2);
-                float returned = dot(returns, tint) / dot(tint, vec3(1.0));
-                out_flux += returned * max(0.25 * phi + 0.5 * out_flux, 0.0);
                 net += out_flux * tint;
                 float sky = has(SHADE_SKY) ? 4.0 * PI * dot(environment.sky, tint) / dot(tint, tint) : 0.0;
                 mean += dot(tint, vec3(1.0)) * vec4(m.x - sky, m.yzw);

@@ -122,7 +122,7 @@ static void blocks_of_pixels(void **state)
         double mean;
     } cases[] = {
         {"vpl-cave", 0.035, 0.002},
-        {"cornell-smoke", 0.014, 4e-4},
+        {"cornell-smoke", 0.014, 1.5e-4},
         {"lantern", 0.006, 0.0015},
     };
     bool good = true;

@@ -50,7 +50,7 @@ static void layout(void **state)
         SIZE(tyn_job, 464),
         SIZE(tyn_picture, 24),
         SIZE(tyn_picture_hook, 48),
-        SIZE(tyn_sources, 444),
+        SIZE(tyn_sources, 428),
         SIZE(tyn_rsm, 6268),
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),

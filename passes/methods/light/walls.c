@@ -1,7 +1,6 @@
 // walls.c -- surfaces as the lattice sees them.
 #include "passes/methods/light/sources.h"
 #include <tyndall/registry.h>
-#include <math.h>
 
 static void add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
@@ -17,42 +16,6 @@ static void add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_graph_add(g, &tyn_pass_walls, &params, refs);
     tyn_take(refs, WALLS_PORT_WALL_LINKS, s->walls.cut);
     s->walls.hits = refs[WALLS_PORT_HITS];
-}
-
-// Are there surfaces that far beyond the box?
-static bool stand_around(const tyn_frame_scene *frame, float reach)
-{
-    float lo[3], hi[3];
-    tyn_surfaces_box(frame, lo, hi);
-    const float *extent = frame->medium.extent;
-    const float most = reach * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
-    bool meet = frame->num_triangles > 0 && most > 0, beyond = false;
-    for (int a = 0; a < 3; a++) {
-        meet = meet && lo[a] < extent[a] + most && hi[a] > -most;
-        beyond = beyond || lo[a] < 0 || hi[a] > extent[a];
-    }
-    return meet && beyond;
-}
-
-static void add_beyond(tyn_graph *g, const tyn_job *job, tyn_sources *s)
-{
-    s->walls.around = s->walls.cut;
-    tyn_walls_beyond_params params;
-    tyn_settings_params(job->settings, &tyn_pass_walls_beyond, &params);
-    if (tyn_is_periodic(job->frame) || !tyn_can_trace(job) ||
-        !stand_around(job->frame, params.reach)) {
-        return;
-    }
-    tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
-    params.shining = s->walls.light.resource != 0;
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [WALLS_BEYOND_PORT_INNER_LINKS] = s->walls.cut.wall_links,
-        [WALLS_BEYOND_PORT_INNER_CELLS] = s->walls.cut.wall_cells,
-    };
-    tyn_connect(refs, WALLS_BEYOND_PORT_SURFACES, job->refs.geometry);
-    tyn_connect(refs, WALLS_BEYOND_PORT_MATERIALS, job->refs.materials);
-    tyn_graph_add(g, &tyn_pass_walls_beyond, &params, refs);
-    tyn_take(refs, WALLS_BEYOND_PORT_WALL_LINKS, s->walls.around);
 }
 
 static void add_rooms(tyn_graph *g, const tyn_job *job, tyn_sources *s)
@@ -123,5 +86,4 @@ void tyn_add_wall_light(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     const bool bounce = s->surface_light.vpls.vpls.resource && s->surface_light.bounces;
     add_wall_light(g, job, tyn_is_periodic(job->frame) ? s->num_suns : 0, s->lamps.vpls && !bounce,
                    s);
-    add_beyond(g, job, s);
 }

@@ -16,12 +16,12 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
         [LATTICE_PORT_WALL_LIGHT] = s->walls.light,
         [LATTICE_PORT_GUESS] = s->sky.guess,
     };
-    tyn_connect(refs, LATTICE_PORT_WALL_LINKS, s->walls.around);
+    tyn_connect(refs, LATTICE_PORT_WALL_LINKS, s->walls.cut);
     tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
     field->moments = refs[LATTICE_PORT_MOMENTS];
     field->leaks = refs[LATTICE_PORT_LEAKS];
     field->wall_power =
-        s->walls.around.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
+        s->walls.cut.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
     field->cell = s->lattice.side;
     field->one_channel = s->lattice.shape.channels == 1;
     memcpy(field->tint, s->lattice.shape.tint, sizeof field->tint);

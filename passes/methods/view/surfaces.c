@@ -152,8 +152,6 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         [SHADE_PORT_MOMENTS] = in->sources->walls.cut.wall_links.resource || params.outside
                                    ? in->field->moments
                                    : (tyn_ref){0},
-        [SHADE_PORT_AROUND_LINKS] = in->sources->walls.around.wall_links,
-        [SHADE_PORT_AROUND_CELLS] = in->sources->walls.around.wall_cells,
         [SHADE_PORT_ROOMS] = in->sources->surface_light.rooms,
     };
     tyn_connect(refs, SHADE_PORT_DISTANCES, seen);

@@ -52,10 +52,9 @@ typedef struct tyn_surface_light {
 // Surfaces as the lattice sees them; {0} without.
 typedef struct tyn_walls {
     tyn_wall_refs cut;
-    tyn_wall_refs around; // with surfaces around the lattice: for its solve; cut, if there are none
-    tyn_ref hits;         // the triangles that cut links meet
-    tyn_ref light;        // what they reflect of light that is not the lattice's
-    tyn_ref light_power;  // of virtual point lights, for the balance
+    tyn_ref hits;        // the triangles that cut links meet
+    tyn_ref light;       // what they reflect of light that is not the lattice's
+    tyn_ref light_power; // of virtual point lights, for the balance
 } tyn_walls;
 
 // The cells of the lattice with their unscattered light: cubes that fill a box around the medium's (lattice_box_of of
@@ -163,8 +162,8 @@ TYN_API void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_v
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
 #define TYN_SKY_PASSES(X) X(env_importance), X(ordinates), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
-    X(lattice_cells), X(walls), X(walls_beyond), X(wall_light), X(rooms), X(columns_average),      \
-        X(columns), X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
+    X(lattice_cells), X(walls), X(wall_light), X(rooms), X(columns_average), X(columns),           \
+        X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
 
 #ifdef __cplusplus
 }
