@@ -7,7 +7,7 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/light/shadow_frame.glsl"
-#include "shaders/lattice/cell_places.glsl"
+#include "cell_places.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "sky_seen_args.h"
 #define SKY_MAPS_AT 2
