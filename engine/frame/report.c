@@ -106,7 +106,7 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
                 add_work(&nodes[i], s->work[w].name, s->work[w].amount);
             }
         }
-        if (s->state != TYN_NODE_CULLED) {
+        if (s->state != TYN_NODE_CULLED && !s->aid) {
             add_counters(&nodes[i], ctx);
         }
     }

@@ -55,6 +55,7 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_outputs = 0;
     g->params_used = 0;
     g->mode = (tyn_record_mode){0};
+    g->aid = false;
     g->current = false;
     for (int i = 0; i < NUM_ZEROS; i++) {
         tyn_graph_history_image(g, "none", i == ZERO_WORDS ? TYN_IMAGE_2D : (tyn_dim)i, formats[i],
@@ -175,6 +176,11 @@ void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref)
     if (r) {
         r->media_only = true;
     }
+}
+
+void tyn_graph_aid(tyn_graph *g, bool on)
+{
+    g->aid = on;
 }
 
 // Is there another thing that is read back by this name? It would be taken for it.
@@ -443,8 +449,10 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     }
     uint32_t index = g->num_nodes++;
     node *n = &g->nodes[index];
-    *n =
-        (node){.pass = pass, .params = g->params + g->params_used, .params_offset = g->params_used};
+    *n = (node){.pass = pass,
+                .params = g->params + g->params_used,
+                .params_offset = g->params_used,
+                .aid = g->aid};
     if (pass->params_size) {
         memcpy(n->params, params, pass->params_size);
     }

@@ -93,6 +93,7 @@ typedef struct tyn_node_stats {
     double cpu_ms; // recording
     uint32_t dispatches, barriers;
     bool media_only;       // depends on the media alone
+    bool aid;              // tyn_graph_aid
     uint64_t bytes;        // memory of the node's OUT and SCRATCH resources
     uint64_t shared_bytes; // of these: where those of other nodes that are needed lie, too
     struct {

@@ -55,6 +55,7 @@ typedef struct node {
     uint64_t hold;    // key of a pass whose results may be old
     uint32_t held;    // ... frames with something new, in which it was not run
     bool media_only, needed;
+    bool aid; // tyn_graph_aid
 } node;
 
 typedef struct output {
@@ -185,6 +186,7 @@ struct tyn_graph {
     uint32_t num_outputs;
     uint64_t unique; // ever-changing content
     tyn_record_mode mode;
+    bool aid;    // nodes that are added now are
     bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled

@@ -506,6 +506,7 @@ uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats)
         g->stats[i] = g->runs[i].stats;
         g->stats[i].name = n->pass->name;
         g->stats[i].media_only = n->media_only;
+        g->stats[i].aid = n->aid;
         graph_node_bytes(g, i, &g->stats[i].bytes, &g->stats[i].shared_bytes);
     }
     *stats = g->stats;

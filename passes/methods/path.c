@@ -96,7 +96,9 @@ static bool add_guide(tyn_graph *g, const tyn_job *job, tyn_ref guide[2])
         pop.outputs = 0;
         pop.guide = guide;
         pop.warn = ignore;
+        tyn_graph_aid(g, true);
         tyn_job_declare(g, &pop, "pop", made);
+        tyn_graph_aid(g, false);
     }
     return guide[0].resource != 0;
 }

@@ -55,7 +55,7 @@ static void layout(void **state)
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),
         SIZE(tyn_method, 96),
-        SIZE(tyn_calls, 792),
+        SIZE(tyn_calls, 800),
         SIZE(tyn_plugin, 64),
         // What kernels read that were compiled with the GLSL of then.
         SIZE(struct medium_block, 196),

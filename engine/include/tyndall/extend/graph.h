@@ -59,6 +59,10 @@ TYN_API void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool 
 // cost.
 TYN_API void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref);
 
+// Nodes added from here on help others and are not seen (`on`), until it is said again: what they count is in no report and no
+// warning.
+TYN_API void tyn_graph_aid(tyn_graph *g, bool on);
+
 TYN_API VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
 
 // The longest side that a 2D image may have into which a node draws.
