@@ -111,6 +111,7 @@ vec3 refine_level(refine_residuals sum, vec3 level, float doubt)
 {
     const vec3 fit = level * sum.fit, less = sum.less + sum.fit - fit;
     const vec3 share = clamp(1.0 - doubt * sum.variance / max(less * less, 1e-30), 0.0, 1.0);
-    return level * clamp(1.0 + share * less / max(fit, 1e-20), 0.0, 2.0);
+    const vec3 next = level * clamp(1.0 + share * less / max(fit, 1e-20), 0.0, 2.0);
+    return any(isnan(next)) ? level : next;
 }
 #endif

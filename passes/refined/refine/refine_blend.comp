@@ -25,9 +25,11 @@ void main()
     refine_residuals sum = REFINE_NO_RESIDUALS;
     // A tent over 4 x 4 tiles: one tile's 64 pixels are too few to tell noise from error.
     for (int k = 0; k < 16; k++) {
-        const ivec2 away = ivec2(k & 3, k >> 2) - 1, at = clamp(first + away, ivec2(0), tiles - 1);
-        const vec2 w = max(1.0 - abs(vec2(away) - t) / 2.0, 0.0);
-        sum = refine_add(sum, residuals[uint(at.y * tiles.x + at.x)], w.x * w.y);
+        const ivec2 away = ivec2(k & 3, k >> 2) - 1, at = first + away;
+        if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, tiles))) {
+            const vec2 w = max(1.0 - abs(vec2(away) - t) / 2.0, 0.0);
+            sum = refine_add(sum, residuals[uint(at.y * tiles.x + at.x)], w.x * w.y);
+        }
     }
     const float share = sum.difference > 0.0 ? clamp(1.0 - args.noise * sum.noise / sum.difference, 0.0, 1.0) : 0.0;
     vec4 fit = texelFetch(fitted_tex, ivec2(pixel), 0);

@@ -19,7 +19,8 @@ void main()
         const vec3 w = refine_weight(fit, totals.mean);
         const vec2 squares = vec2(dot(w, less * less), dot(w, noise * noise));
         if (!any(isnan(squares)) && !any(isinf(squares))) {
-            found = refine_residuals(squares.x, squares.y, fit, less, noise * noise);
+            const vec3 unit = totals.mean + 1e-20; // squares of sums stay in range
+            found = refine_residuals(squares.x, squares.y, fit / unit, less / unit, (noise / unit) * (noise / unit));
         }
     }
     part[gl_LocalInvocationIndex] = found;
