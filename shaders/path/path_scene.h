@@ -20,7 +20,7 @@ typedef struct tyn_path_params {
     uint32_t num_shapes;
     uint32_t sphere;    // the only shape is one
     uint32_t grey;      // sigma_s, sigma_a and g are equal in all channels
-    uint32_t one_phase; // g is
+    uint32_t one_phase; // the phase function is
     uint32_t tabled;    // some phase function is a table
     uint32_t repeat;    // some axis is periodic
     uint32_t triangles;
@@ -40,7 +40,7 @@ typedef struct tyn_path_params {
     uint32_t layers;        // images: single, multiple and transmittance as well
     uint32_t opaque;        // images: a background is seen, alpha is 1
     uint32_t ended;         // images: in a field, after max_depth scatterings
-    uint32_t field;         // images: one says where light comes from
+    uint32_t field;         // images: guided by one of pop's
     uint32_t scattered;     // probes: without light that has not scattered
     float world[3][3];      // probes: the world's axes in M
     float lamp_power[3];    // balance: of the lamps inside, W
@@ -55,7 +55,8 @@ enum { PATH_NUM_PARAMS = 3 };
 static const tyn_param path_params_table[PATH_NUM_PARAMS] = {
     {"guide", TYN_PARAM_INT, offsetof(tyn_path_params, guide), TYN_PATH_GUIDE_FIELD, 0, 2, "",
      "what directions are drawn by beside a forward phase function (g > 0.65): 0 nothing, 1 a "
-     "light, 2 pop's field in images without surfaces, else a light",
+     "light, 2 pop's field in images, but a light among surfaces, in periodic and thin media and "
+     "with tables",
      NULL},
     {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "",
      "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL},
