@@ -46,7 +46,8 @@ static float estimate(const renderer *r, const tyn_view *view)
 {
     const float *light = tyn_offline_output(r->offline, TYN_OUTPUT_RADIANCE);
     const float *error = tyn_offline_output(r->offline, TYN_OUTPUT_ERROR);
-    return (float)metrics_expected(light, error, (size_t)view->width * view->height);
+    const size_t pixels = (size_t)view->width * view->height;
+    return light && error ? (float)metrics_expected(light, error, pixels) : 0;
 }
 
 int until_render(app *a, renderer *r, const tyn_scene *scene, const tyn_view *view, float error,

@@ -178,9 +178,10 @@ int stress_render(app *a, tyn_device *device, const char *with, const stress_cas
         }
         take_picture(&r, picture);
         take_report(r.offline, counts);
-        // The first frame makes kernels, and what the paths need to know of the scene.
-        const double used = turn == 0 ? 0.001 * tyn_offline_frame_ms(r.offline)
-                                      : 4 * (app_seconds() - start);
+        // The first frame makes kernels, and what the paths need to know of the scene: its own time counts. The next turn takes four
+        // times the samples of all before.
+        const double used =
+            turn == 0 ? 0.001 * tyn_offline_frame_ms(r.offline) : 4 * (app_seconds() - start);
         bool enough = picture->noise <= effort->noise && turn > 1;
         if (!r.info.progressive || enough || used > effort->seconds) {
             break;

@@ -48,7 +48,7 @@ bool panel_color(const char *label, float rgb[3]); // each 0 or more
 bool panel_choice(const char *label, int *index, const char *const *names, int count);
 bool panel_checkbox(const char *label, bool *value);
 bool panel_button(const char *label);
-// Shares from left to right, equally far apart, by their logarithm, with a line at each power of ten; 0: not known.
+// A curve of shares on a logarithmic scale, with a line at each power of ten; values are equally far apart, 0: not known.
 void panel_curve(const char *label, const float *values, int count);
 void panel_push(int id); // labels up to panel_pop may be those of other groups
 void panel_pop(void);
