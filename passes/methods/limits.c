@@ -211,7 +211,7 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         if (row->warning.format && hold(row->warned, TYN_LIMIT_BOUNDS, &r)) {
             char line[256];
             tyn_limit_say(row, &row->warning, &r, line, sizeof line);
-            job->warn(job->warn_user, line);
+            tyn_job_warn(job, "%s", line);
         }
     }
 }

@@ -66,12 +66,6 @@ static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t 
                                    (tyn_extent){width, height, 1}, 1);
 }
 
-static void ignore(void *user, const char *line)
-{
-    (void)user;
-    (void)line;
-}
-
 // Surfaces make noise of their own, and in thin media a path scatters about once.
 static bool wants_guide(const tyn_job *job, const tyn_path_params *params)
 {
@@ -95,7 +89,7 @@ static bool add_guide(tyn_graph *g, const tyn_job *job, tyn_ref guide[2])
         tyn_ref made[TYN_NUM_OUTPUTS];
         pop.outputs = 0;
         pop.guide = guide;
-        pop.warn = ignore;
+        pop.warn = NULL;
         tyn_graph_aid(g, true);
         tyn_job_declare(g, &pop, "pop", made);
         tyn_graph_aid(g, false);
