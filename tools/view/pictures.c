@@ -308,7 +308,7 @@ void pictures_retire(viewer *v, rendering *r)
 
 uint32_t pictures_samples_wanted(const viewer *v)
 {
-    return method_samples(&v->how, 4096);
+    return method_samples(&v->how, VIEWER_SAMPLES);
 }
 
 static bool moving(const viewer *v)

@@ -44,8 +44,10 @@ static bool use_method(viewer *v, const method_options *how)
     v->asked_at = app_seconds();
     const uint32_t errors = v->app->num_errors;
     method_options own = *how;
+    char samples[16];
     if (own.method && strcmp(own.method, "refined") == 0 && !own.refine && !own.spp) {
-        own.refine = "4096"; // as pictures_samples_wanted: so many that none may end in pop's field
+        snprintf(samples, sizeof samples, "%d", VIEWER_SAMPLES);
+        own.refine = samples; // so many that no path may end in pop's field
     }
     bool works = method_open(v->app, &own, &made) == EXIT_DONE;
     if (works && scene_prepare(v->app, &made.info, &v->scene) != EXIT_DONE) {

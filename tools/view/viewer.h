@@ -148,6 +148,7 @@ void pictures_say(const viewer *v, char *text, size_t size);
 bool pictures_working(const viewer *v);     // something is to be computed now, or soon
 uint32_t pictures_pending(const viewer *v); // kernels that pictures wait for
 bool pictures_show(viewer *v, const rendering *r, picture_slot slot); // the layer of its last frame
+enum { VIEWER_SAMPLES = 4096 }; // a pixel, where nothing is said
 uint32_t pictures_samples_wanted(const viewer *v);
 void pictures_args(const viewer *v, struct picture_args *args);
 // Does the method make it, and can it be looked at? `layer`: in picture_layers.
