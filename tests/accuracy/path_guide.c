@@ -2,7 +2,7 @@
 // same mean, and less noise.
 //
 // Asserted for every scene: sums differ by at most 3.5 standard errors, z of 8x8 blocks has an RMS below 1.4, and the variance is at
-// most the share of the plain paths' that is given. 12 s on two cores.
+// most the share of the plain paths' that is given, a fifth above what lavapipe's samples have (a tenth where it is about 1). 12 s on two cores.
 #include "bound.h"
 #include "gpu_test.h"
 #include "path_run.h"
@@ -65,30 +65,30 @@ static void cube(void **state)
     scene_add_box(&scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
     scene_add_sun(&scene, 1, 0, 0, 1, 1, 1);
     view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, 0, -1, 0, (float[]){0, 0, 1}, 0.5f, SIDE);
-    judge(*state, "cube, g 0.9", &scene, &view, 256, (double[]){0.12, 0.05});
+    judge(*state, "cube, g 0.9", &scene, &view, 256, (double[]){0.08, 0.03});
     tyn_scene_finish(&scene);
 }
 
 static void smoke(void **state)
 {
-    sample(*state, "smoke", 256, (double[]){0.55, 0.45});
+    sample(*state, "smoke", 256, (double[]){0.46, 0.37});
 }
 
 static void sky(void **state)
 {
-    sample(*state, "smoke-sky", 256, (double[]){0.9, 0.65});
+    sample(*state, "smoke-sky", 256, (double[]){0.85, 0.55});
 }
 
 // Three channels of unequal absorption, under a map of strong contrast.
 static void contrast(void **state)
 {
-    sample(*state, "plume-contrast", 128, (double[]){1.2, 1.2});
+    sample(*state, "plume-contrast", 128, (double[]){1.1, 1.1});
 }
 
 // Among surfaces a light guides, with the field's setting as well.
 static void cave(void **state)
 {
-    sample(*state, "vpl-cave", 64, (double[]){1, 1});
+    sample(*state, "vpl-cave", 64, (double[]){0.8, 0.85});
 }
 
 int main(void)
