@@ -1,5 +1,6 @@
 // ordinates_gather.comp -- the ordinate of each region; a thread per region.
 #include "shaders/common/scene_args.h"
+#include "shaders/common/uniform_branch.glsl"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"
 #include "ordinates_region.glsl"
@@ -58,7 +59,7 @@ void main()
     const vec3 outwards = ordinates_vector(r);
     vec4 power = vec4(0.0);
     vec3 moment = vec3(0.0);
-    if (environment.has_map == 0u) {
+    if (uniform_branch(environment.has_map == 0u)) {
         power.rgb = vec3(solid_angle);
         moment = outwards;
     } else {
