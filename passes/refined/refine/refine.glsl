@@ -97,6 +97,13 @@ refine_sums refine_add(refine_sums a, refine_sums b, float w)
                        a.excess + w * b.excess, a.spread + w * b.spread);
 }
 
+// Sums of squares of what pop's picture, and it with that share of the change, are off: unbiased, and below 0 by noise.
+vec2 refine_squares(refine_sums s, float share)
+{
+    const float pop = s.residual - s.noise;
+    return vec2(pop, share * share * s.change - 2.0 * share * s.confirmed + pop);
+}
+
 refine_residuals refine_add(refine_residuals a, refine_residuals b, float w)
 {
     return refine_residuals(a.difference + w * b.difference, a.noise + w * b.noise, a.fit + w * b.fit, a.less + w * b.less,

@@ -26,8 +26,12 @@
 #define REFINE_COEFFICIENTS_ROW 3
 #define REFINE_FINAL 3 // coefficients of pop, single and 1
 
-// Relative error that pop is taken to have where samples do not tell: 1.2 to 36 % in the scenes of the bench, 9.5 in the geometric mean.
-#define REFINE_PRIOR 0.09f
+// What pop's relative error is taken to be before samples tell, a lognormal prior: its median, and the deviation of its logarithm. In
+// the scenes of the bench it is 1.2 to 36 %, 9.5 in the geometric mean.
+#define REFINE_PRIOR 0.13f
+#define REFINE_PRIOR_SPREAD 0.7f
+// By what variances of squares are multiplied, as few samples of a heavy tail do not show them.
+#define REFINE_TAIL 4.0f
 
 struct refine_args {
     tyn_uvec2 picture; // pixels
@@ -72,8 +76,10 @@ struct refine_totals {
     tyn_vec3 mean;  // of pop's picture
     float share;    // of the change that is confirmed
     tyn_vec3 level; // by which the fit is multiplied, so that its sum is the samples'
+    // Mean squares of pop's and of the fit's errors over the picture, in units of the light, as far as samples tell.
+    tyn_vec2 expected;
 };
-TYN_ASSERT_SIZE(refine_totals, 28);
+TYN_ASSERT_SIZE(refine_totals, 36);
 
 // Sums over a tile of 8 x 8 pixels.
 struct refine_residuals {

@@ -1,7 +1,7 @@
 // refine_errors.comp -- how far pop and the refined picture are off, in tiles: mean squares as in refine_sums. A thread a tile.
 //
 // What a part's samples differ by from a fit of the others, less their own variance, is an unbiased estimate of the fit's mean
-// square error, but for few samples a noisy one: it is weighed, by its standard error, with what is known before of pop.
+// square error, but for few samples a noisy one: it is weighed, by its standard error, with what the whole picture leads to expect.
 #include "refine.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -29,9 +29,10 @@ void main()
         }
     }
     const float n = 3.0 * sum.cells, share = totals.share; // three channels
-    const vec2 found = vec2(sum.residual - sum.noise, share * share * sum.change - 2.0 * share * sum.confirmed + sum.residual - sum.noise) / n;
-    const float before = REFINE_PRIOR * REFINE_PRIOR * max(sum.light / n, 1e-6), trust = before * before * n * n / max(excess, 1e-30);
-    vec2 errors = (found * trust + before) / (trust + 1.0);
-    errors = max(errors, vec2(0.04 * before, max(0.04 * before, share * share * sum.spread / n)));
+    const vec2 before = totals.expected * max(sum.light / n, 1e-6);
+    const vec2 trust = before * before * n * n / max(REFINE_TAIL * excess, 1e-30);
+    vec2 errors = (refine_squares(sum, share) / n * trust + before) / (trust + 1.0);
+    errors = max(errors, 0.04 * before);
+    errors.y = max(errors.y, share * share * sum.spread / n);
     imageStore(errors_image, tile, vec4(errors, 0.0, 0.0));
 }

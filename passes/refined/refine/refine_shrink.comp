@@ -1,10 +1,34 @@
-// refine_shrink.comp -- the share of the whole change that the parts confirm of each other, less what noise may have done. One group.
+// refine_shrink.comp -- the share of the whole change that the parts confirm of each other, less what noise may have done; and how
+// far pop and the fit are off in the whole picture. One group.
 #include "refine.glsl"
 
 layout(local_size_x = 64) in;
 TYN_READ(0, sums, refine_sums sums[]);
 TYN_UPDATE(1, totals, refine_totals totals);
 shared refine_sums part[64];
+
+// Posterior mean of a mean square of which samples found `found`, which may be below 0, with that variance; all in units of the light.
+// Errors below 1 % or above half the light need many samples to be believed.
+float expected(float found, float variance)
+{
+    const int steps = 16;
+    float most = -1e30, weights = 0.0, sum = 0.0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = -steps; k <= steps; k++) {
+            const float u = 2.5 * float(k) / float(steps);
+            const float error = REFINE_PRIOR * exp(REFINE_PRIOR_SPREAD * u), off = found - error * error;
+            const float likely = -0.5 * (u * u + off * off / max(variance, 1e-30));
+            const float weight = exp(likely - most);
+            if (pass == 0) {
+                most = max(most, likely);
+            } else {
+                weights += weight;
+                sum += weight * error * error;
+            }
+        }
+    }
+    return sum / weights;
+}
 
 void main()
 {
@@ -21,6 +45,11 @@ void main()
         }
         // Nothing below `margin` standard errors; far above them next to nothing is taken back.
         const float doubt = args.margin * args.margin * sum.doubt / max(sum.confirmed, 1e-30);
-        totals.share = sum.confirmed > 0.0 ? clamp((sum.confirmed - doubt) / max(sum.change, 1e-30), 0.0, 1.0) : 0.0;
+        const float share = sum.confirmed > 0.0 ? clamp((sum.confirmed - doubt) / max(sum.change, 1e-30), 0.0, 1.0) : 0.0;
+        const vec2 found = refine_squares(sum, share) / max(sum.light, 1e-20);
+        const float variance = REFINE_TAIL * sum.excess / max(sum.light * sum.light, 1e-30);
+        totals.share = share;
+        totals.expected.x = expected(found.x, variance);
+        totals.expected.y = share > 0.0 ? min(expected(found.y, variance), totals.expected.x) : totals.expected.x;
     }
 }
