@@ -94,8 +94,10 @@ refine_sums refine_add(refine_sums a, refine_sums b, float w)
 {
     return refine_sums(a.cells + w * b.cells, a.light + w * b.light, a.confirmed + w * b.confirmed, a.doubt + w * b.doubt,
                        a.change + w * b.change, a.residual + w * b.residual, a.noise + w * b.noise,
-                       a.excess + w * b.excess, a.spread + w * b.spread);
+                       a.spread + w * b.spread, a.excess + w * b.excess);
 }
+
+const refine_sums REFINE_NO_SUMS = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0));
 
 // Sums of squares of what pop's picture, and it with that share of the change, are off: unbiased, and below 0 by noise.
 vec2 refine_squares(refine_sums s, float share)

@@ -58,10 +58,10 @@ struct refine_sums {
     float change;    // change squared
     float residual;  // residual of a part squared: pop's error and noise
     float noise;     // variance of a part
-    float excess;    // (residual - noise) squared
     float spread;    // variance of the change, by leaving out parts
+    tyn_vec2 excess; // squares of what a cell says of pop's square error, and of the whole change's
 };
-TYN_ASSERT_SIZE(refine_sums, 36);
+TYN_ASSERT_SIZE(refine_sums, 40);
 
 // Over the cells of a tile in which something was kept, each a sum over channels of squares in units of the light.
 struct refine_changes {

@@ -53,7 +53,9 @@ void main()
         all_residual += v.residual[k] / float(REFINE_PARTS);
         fit = refine_plus(fit, fits[k], 1.0 / float(REFINE_PARTS));
     }
-    refine_sums found = refine_sums(1.0, dot(v.pop / (totals.mean + 1e-20), vec3(1.0)), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    refine_sums found = REFINE_NO_SUMS;
+    found.cells = 1.0;
+    found.light = dot(v.pop / (totals.mean + 1e-20), vec3(1.0));
     vec3 variance = vec3(0.0); // of a part's samples
     for (uint k = 0u; k < uint(REFINE_PARTS); k++) {
         const float n = float(REFINE_PARTS);
@@ -67,8 +69,8 @@ void main()
     found.noise = dot(w, variance);
     // As if there were one part: those that fits have in common make them noisier together than apart.
     found.doubt = dot(w * w * variance, all_change * all_change);
-    found.excess = (found.residual - found.noise) * (found.residual - found.noise);
-    part[gl_LocalInvocationIndex] = inside ? found : refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    found.excess = refine_squares(found, 1.0) * refine_squares(found, 1.0);
+    part[gl_LocalInvocationIndex] = inside ? found : REFINE_NO_SUMS;
     if (inside) {
         const ivec2 to = ivec2(cell);
         imageStore(final_image, to, vec4(fit.pop, 0.0));

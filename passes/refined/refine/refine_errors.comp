@@ -18,8 +18,8 @@ void main()
     if (any(greaterThanEqual(tile, size))) {
         return;
     }
-    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    float excess = 0.0;
+    refine_sums sum = REFINE_NO_SUMS;
+    vec2 excess = vec2(0.0);
     for (int k = 0; k < 49; k++) {
         const ivec2 away = ivec2(k % 7, k / 7) - 3, at = tile + away;
         if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size))) {

@@ -8,14 +8,13 @@ TYN_UPDATE(1, totals, refine_totals totals);
 shared refine_sums part[64];
 
 // Posterior mean of a mean square of which samples found `found`, which may be below 0, with that variance; all in units of the light.
-// Errors below 1 % or above half the light need many samples to be believed.
+// Errors of .1 to 106 % of the light are looked at.
 float expected(float found, float variance)
 {
-    const int steps = 16;
     float most = -1e30, weights = 0.0, sum = 0.0;
     for (int pass = 0; pass < 2; pass++) {
-        for (int k = -steps; k <= steps; k++) {
-            const float u = 2.5 * float(k) / float(steps);
+        for (int k = -28; k <= 12; k++) {
+            const float u = 0.25 * float(k);
             const float error = REFINE_PRIOR * exp(REFINE_PRIOR_SPREAD * u), off = found - error * error;
             const float likely = -0.5 * (u * u + off * off / max(variance, 1e-30));
             const float weight = exp(likely - most);
@@ -33,7 +32,7 @@ float expected(float found, float variance)
 void main()
 {
     const uint thread = gl_LocalInvocationIndex;
-    refine_sums sum = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    refine_sums sum = REFINE_NO_SUMS;
     for (uint i = thread; i < args.groups; i += 64u) {
         sum = refine_add(sum, sums[i], 1.0);
     }
@@ -47,9 +46,9 @@ void main()
         const float doubt = args.margin * args.margin * sum.doubt / max(sum.confirmed, 1e-30);
         const float share = sum.confirmed > 0.0 ? clamp((sum.confirmed - doubt) / max(sum.change, 1e-30), 0.0, 1.0) : 0.0;
         const vec2 found = refine_squares(sum, share) / max(sum.light, 1e-20);
-        const float variance = REFINE_TAIL * sum.excess / max(sum.light * sum.light, 1e-30);
+        const vec2 variance = REFINE_TAIL * sum.excess / max(sum.light * sum.light, 1e-30);
         totals.share = share;
-        totals.expected.x = expected(found.x, variance);
-        totals.expected.y = share > 0.0 ? min(expected(found.y, variance), totals.expected.x) : totals.expected.x;
+        totals.expected.x = expected(found.x, variance.x);
+        totals.expected.y = share > 0.0 ? min(expected(found.y, variance.y), totals.expected.x) : totals.expected.x;
     }
 }
