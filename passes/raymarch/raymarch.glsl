@@ -229,21 +229,28 @@ vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_
                  inout march_shadows shadow, inout vec3 single)
 {
     vec3 light = vec3(0.0);
-    for (uint n = 0u; n < raymarch_num_suns; n++) {
-        float lit = 1.0;
-        if (raymarch_has(RAYMARCH_SHADOWS)) {
-            lit = march_lit_of(true, suns[n].map, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
+    // Selections, as a loop that runs no time stays in the module (specialize.h).
+    if (raymarch_num_suns > 0u) {
+        for (uint n = 0u; n < raymarch_num_suns; n++) {
+            float lit = 1.0;
+            if (raymarch_has(RAYMARCH_SHADOWS)) {
+                lit = march_lit_of(true, suns[n].map, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
+            }
+            light += march_sunlight(suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
+                                    lit * b.weight_scaled, single);
         }
-        light += march_sunlight(suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
-                                lit * b.weight_scaled, single);
     }
-    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-        light += march_lamplight(kept[n], 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight, b.weight_scaled,
-                                 shadow, single);
+    if (raymarch_num_lamps > 0u) {
+        [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+            light += march_lamplight(kept[n], 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight, b.weight_scaled,
+                                     shadow, single);
+        }
     }
-    for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
-        light += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight,
-                                 b.weight_scaled, shadow, single);
+    if (raymarch_num_lamps > MARCH_LAMPS_KEPT) {
+        for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
+            light += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight,
+                                     b.weight_scaled, shadow, single);
+        }
     }
     return light;
 }
@@ -321,16 +328,20 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
 {
     march_medium unit = march_medium_of(medium_of_density(1.0));
     march_sun suns[TYN_BEAM_MAX_SUNS];
-    for (uint n = 0u; n < raymarch_num_suns; n++) {
-        suns[n] = march_sun_of(n, unit, origin, direction);
+    if (raymarch_num_suns > 0u) {
+        for (uint n = 0u; n < raymarch_num_suns; n++) {
+            suns[n] = march_sun_of(n, unit, origin, direction);
+        }
     }
     float pixel = camera_pixel(camera).x;
     bool orthographic = camera.orthographic != 0u;
     march_lamps lamps = march_lamps(origin, direction, start, orthographic ? pixel : 0.0,
                                     orthographic ? 0.0 : pixel);
     march_lamp kept[MARCH_LAMPS_KEPT];
-    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-        kept[n] = march_lamp_of(n, lamps);
+    if (raymarch_num_lamps > 0u) {
+        [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+            kept[n] = march_lamp_of(n, lamps);
+        }
     }
     march_near near = march_near_of(lamps, end);
     vec3 inverse = ray_inverse(direction);
@@ -387,10 +398,12 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
         if (raymarch_has(RAYMARCH_ROOMS) && waiting.walls > 0) {
             room = march_room(origin, direction, waiting.wall_at[0], start);
         }
-        for (int i = 0; raymarch_has(RAYMARCH_WALLS) && i < waiting.walls; i++) {
-            vec3 J = march_tinted(march_field_between_walls(origin + waiting.wall_at[i] * direction, room));
-            state.radiance += waiting.wall_weight[i] * J;
-            state.before += i == waiting.last_wall ? vec3(0.0) : waiting.wall_weight[i] * J;
+        if (raymarch_has(RAYMARCH_WALLS)) {
+            for (int i = 0; i < waiting.walls; i++) {
+                vec3 J = march_tinted(march_field_between_walls(origin + waiting.wall_at[i] * direction, room));
+                state.radiance += waiting.wall_weight[i] * J;
+                state.before += i == waiting.last_wall ? vec3(0.0) : waiting.wall_weight[i] * J;
+            }
         }
         if (raymarch_num_near > 0u) {
             vec3 last, light = march_near_light(near, lamps, unit, waiting.near_lamps, line.medium0, line.medium1,
