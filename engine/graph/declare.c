@@ -429,6 +429,42 @@ static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs
     }
 }
 
+// A node that makes the same as `n`: of the same pass, params and inputs, which nobody has changed since. NULL: there is none,
+// or it depends on more than these.
+static node *find_same(const tyn_graph *g, const node *n)
+{
+    const tyn_pass_desc *pass = n->pass;
+    bool shared = !pass->settles && !pass->holds;
+    for (uint32_t p = 0; p < pass->num_ports; p++) {
+        shared = shared && pass->ports[p].dir != TYN_INOUT;
+    }
+    for (uint32_t i = 0; shared && g->nodes + i < n; i++) {
+        node *other = &g->nodes[i];
+        bool same = other->pass == pass && !memcmp(other->params, n->params, pass->params_size);
+        for (uint32_t p = 0; same && p < pass->num_ports; p++) {
+            const bool in = pass->ports[p].dir == TYN_IN;
+            same = in ? other->res[p] == n->res[p] && other->versions[p] == n->versions[p]
+                      : !other->res[p] || !g->resources[other->res[p] - 1].version;
+        }
+        if (same) {
+            return other;
+        }
+    }
+    return NULL;
+}
+
+// In the place of the newest node.
+static void share_node(tyn_graph *g, node *same, tyn_ref *refs)
+{
+    g->params_used = (uint32_t)g->nodes[--g->num_nodes].params_offset;
+    same->aid = same->aid && g->aid;
+    for (uint32_t p = 0; p < same->pass->num_ports; p++) {
+        if (same->pass->ports[p].dir == TYN_OUT) {
+            refs[p] = (tyn_ref){same->res[p], 0};
+        }
+    }
+}
+
 void tyn_graph_refuse(tyn_graph *g, tyn_result why)
 {
     g->status = g->status == TYN_OK ? why : g->status;
@@ -461,6 +497,11 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     connect_inputs(g, n, refs);
     if (g->status != TYN_OK) {
         return g->status;
+    }
+    node *same = find_same(g, n);
+    if (same) {
+        share_node(g, same, refs);
+        return TYN_OK;
     }
     tyn_builder b = {.g = g, .node = n};
     tyn_result result = pass->declare(&b, n->params);

@@ -119,8 +119,36 @@ static void declare_chain(tyn_graph *g, const chain *c)
     tyn_ref bias = tyn_graph_upload_buffer(g, "bias", &c->bias, sizeof c->bias, 0);
     tyn_ref a = add_blur(g, in, (tyn_ref){0}, c->first);
     tyn_ref b = add_blur(g, a, bias, c->second);
-    add_blur(g, in, (tyn_ref){0}, c->first);
+    node_params other = c->first; // a node like another is that one
+    other.value++;
+    add_blur(g, in, (tyn_ref){0}, other);
     tyn_graph_output(g, "result", b, true);
+}
+
+// A node that makes the same as one before it is that one; not where a param or an input differs, or where it changes something in
+// place.
+static void same_nodes(void **state)
+{
+    fixture *f = *state;
+    const node_params p = {1, 0, 0}, q = {1, 1, 0};
+    tyn_graph_begin(f->g);
+    const tyn_ref in = upload(f->g, "in", 1), other = upload(f->g, "other", 2);
+    const tyn_ref a = add_blur(f->g, in, (tyn_ref){0}, p);
+    assert_int_equal(add_blur(f->g, in, (tyn_ref){0}, p).resource, a.resource);
+    assert_int_not_equal(add_blur(f->g, in, (tyn_ref){0}, q).resource, a.resource);
+    assert_int_not_equal(add_blur(f->g, other, (tyn_ref){0}, p).resource, a.resource);
+    tyn_ref sums[2][ADD_NUM];
+    for (int i = 0; i < 2; i++) {
+        memset(sums[i], 0, sizeof sums[i]);
+        sums[i][ADD_SUM] = i ? sums[0][ADD_SUM] : tyn_graph_history_buffer(f->g, "sum", 4, 1);
+        sums[i][ADD_X] = in;
+        assert_int_equal(tyn_graph_add(f->g, &toy_add, &p, sums[i]), TYN_OK);
+    }
+    assert_int_equal(sums[1][ADD_SUM].version, 2);
+    const tyn_node_stats *stats;
+    tyn_graph_output(f->g, "a", a, true);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_int_equal(tyn_graph_stats(f->g, &stats), 5);
 }
 
 // ---- barriers ---------------------------------------------------------------------------------
@@ -436,7 +464,7 @@ static void new_compilation_keeps(void **state)
         tyn_graph_output(f->g, "second", second, false);
         if (more) {
             const tyn_ref third =
-                add_blur(f->g, i == 4 ? second : first, (tyn_ref){0}, (node_params){i, 0, 0});
+                add_blur(f->g, i == 4 ? second : first, (tyn_ref){0}, (node_params){i, 1, 0});
             tyn_graph_output(f->g, "third", third, false);
         }
         const uint32_t before = f->fake->created;
@@ -562,7 +590,7 @@ static void counters(void **state)
         const tyn_ref in = upload(f->g, "input", 1);
         tyn_ref first[COUNT_NUM] = {in}, second[COUNT_NUM] = {in};
         tyn_graph_add(f->g, &counting, &(node_params){0}, first);
-        tyn_graph_add(f->g, &counting, &(node_params){0}, second);
+        tyn_graph_add(f->g, &counting, &(node_params){0, 1, 0}, second);
         tyn_graph_output(f->g, "out", second[COUNT_OUT], false);
         assert_int_equal(frame(f), TYN_OK);
         const tyn_node_stats *stats;
@@ -687,6 +715,7 @@ int main(void)
         TEST(dump_tells_the_truth),
         TEST(second_frame_waits_for_the_first),
         TEST(indirect_dispatch),
+        TEST(same_nodes),
         TEST(drawing),
         TEST(drawing_needs_graphics),
         TEST(host_image),
