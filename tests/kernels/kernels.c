@@ -8,6 +8,7 @@
 #include "gpu/compiler.h"
 #include "gpu/device.h"
 #include "gpu/specialize.h"
+#include "skip.h"
 #include "todo.h"
 #include <tyndall/io.h>
 #include <tyndall/offline.h>
@@ -348,7 +349,7 @@ int main(int argc, char **argv)
                                                        .get_instance_proc_addr = get_function),
                                 &to) != TYN_OK) {
         tyn_device_destroy(&from);
-        return 77; // there is no such device
+        skip_all("no device %s", argv[first]);
     }
     uint32_t wrong = 0;
     if (fine && !check) {
