@@ -1,13 +1,14 @@
 // kernels.c -- what another device's compiler makes of the kernels that scenes use: time, registers, spills, waves, code.
 //
-// usage: kernels DEVICE METHOD SCENE...           a line of CSV for each variant; SCENE: a name of samples/scenes
+// usage: kernels DEVICE METHOD SCENE...           a line of CSV for each variant (tools/kernels has the columns); SCENE: of samples/scenes
 //        kernels --check DEVICE METHOD SCENE...   exits with 1 where one passes a limit below, and with 77 without DEVICE
 //
-// Scenes are rendered on the software device, and each pipeline of that is then made on DEVICE (part of its name), of which no more is
-// asked. Mesa's drivers for AMD do that without a card: RADV_FORCE_FAMILY=navi21 and DEVICE RADV (tools/kernels).
+// Scenes are rendered on the software device. Each of its pipelines is then compiled on DEVICE (part of its name), with the constants
+// that a card has. Mesa's drivers for AMD do that without a card: RADV_FORCE_FAMILY=navi21 and DEVICE RADV (tools/kernels).
 #include "gpu/compiler.h"
 #include "gpu/device.h"
 #include "gpu/specialize.h"
+#include "shaders/path/path_args.h"
 #include "skip.h"
 #include "todo.h"
 #include <tyndall/io.h>
@@ -44,7 +45,7 @@ static const struct {
 
 static figures last; // of the pipeline made last
 
-// ---- between the library and Vulkan: pipelines keep statistics ------------------------------------
+// ---- pipelines that keep statistics: functions between the library and Vulkan -----------------------
 
 static PFN_vkGetInstanceProcAddr real_get;
 static PFN_vkGetDeviceProcAddr real_device_get;
@@ -200,35 +201,59 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_function(VkInstance instance
 
 // ---- limits --------------------------------------------------------------------------------------
 
-// Of a module as the driver has it, bytes; of waves that a SIMD holds at once, of the 16 of a NAVI21. Nothing spills.
-enum { MOST_BYTES = 65536, LEAST_WAVES = 8 };
+// Of a module as the driver has it, bytes; registers spilled; waves a SIMD (a NAVI21 has 16 at most).
+typedef struct limit {
+    const char *kernel;
+    size_t bytes;
+    double spilled, waves;
+    const char *why; // it passes those of all
+    bool met;        // some variant did
+} limit;
 
-static const struct {
-    const char *kernel, *why;
-} known[] = {
-    {"raymarch_grey",
-     "lamps, walls, the sparse march and what is behind the medium in one kernel: 3 to 5 times its "
-     "limit with all of them"},
-    {"raymarch_colour", "as raymarch_grey"},
-    {"lattice_lamps_vpls",
-     "four shadow rays at once, each with a beam's place: 79 registers spilled"},
-    {"shade_surface", "all lights of a surface in one kernel"},
-    {"shade_edges", "as shade_surface, of several samples a pixel"},
-    {"shade_alone", "as shade_surface, without a list"},
-    {"shade_vpls", "184 registers: the light of a virtual light with its lobe"},
-    {"shade_places", "as shade_vpls"},
+static const limit of_all = {"", 65536, 0, 8, NULL, false};
+
+// About a tenth above what is seen.
+static limit known[] = {
+    {"raymarch_grey", 215000, 0, 4,
+     "lamps, walls, the sparse march and what is behind the medium in one kernel", false},
+    {"lattice_lamps_vpls", 65536, 90, 4, "four shadow rays at once, each with its place in a beam",
+     false},
+    {"shade_surface", 180000, 0, 8, "all lights of a surface in one kernel", false},
+    {"shade_edges", 205000, 0, 8, "as shade_surface, of several samples a pixel", false},
+    {"shade_alone", 112000, 0, 8, "as shade_surface, without a list", false},
+    {"shade_vpls", 113000, 0, 4, "virtual lights with their lobes", false},
+    {"shade_places", 90000, 0, 4, "as shade_vpls", false},
 };
+enum { NUM_KNOWN = sizeof known / sizeof *known };
 
-static bool is_within(const char *kernel, const char *constants, size_t bytes, const figures *f)
+static bool is_within(const limit *l, size_t bytes, const figures *f)
 {
-    const bool holds = bytes <= MOST_BYTES && f->spilled == 0 && f->waves >= LEAST_WAVES;
-    const char *why = NULL;
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        why = strcmp(known[i].kernel, kernel) == 0 ? known[i].why : why;
+    return bytes <= l->bytes && f->spilled <= l->spilled && f->waves >= l->waves;
+}
+
+static bool check_limits(const char *kernel, const char *constants, size_t bytes, const figures *f)
+{
+    limit *own = NULL;
+    for (size_t i = 0; i < NUM_KNOWN; i++) {
+        own = strcmp(known[i].kernel, kernel) == 0 ? &known[i] : own;
     }
-    return holds || (why && todo_if(true, false, why,
-                                    "%s (%s): %zu bytes, %.0f registers spilled, %.0f waves",
-                                    kernel, constants, bytes, f->spilled, f->waves));
+    const bool holds = is_within(&of_all, bytes, f), todo = own && is_within(own, bytes, f);
+    if (own && !holds) {
+        own->met = true;
+    }
+    return holds || todo_if(todo, false, own ? own->why : "",
+                            "%s (%s): %zu bytes, %.0f registers spilled, %.0f waves", kernel,
+                            constants, bytes, f->spilled, f->waves);
+}
+
+// False, and said, where a mark has to go.
+static bool check_marks(void)
+{
+    bool good = true;
+    for (size_t i = 0; i < NUM_KNOWN; i++) {
+        good = (known[i].met || todo_if(true, true, known[i].why, "%s", known[i].kernel)) && good;
+    }
+    return good;
 }
 
 // ---- the table -----------------------------------------------------------------------------------
@@ -267,10 +292,21 @@ static size_t specialised_size(const tyn_kernel *k, const uint32_t *spec)
     return count * sizeof *words;
 }
 
+// Constants as a card has them: on a processor `path` keeps few triangles in registers.
+static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_t *spec)
+{
+    memcpy(spec, from, k->num_spec * sizeof *spec);
+    if (strncmp(k->name, "path_", 5) == 0 && k->num_spec == TYN_PATH_NUM_SPEC) {
+        spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_KEEP_FEW;
+    }
+}
+
 // One variant, made on the other device. False: it fails, or passes a limit.
-static bool measure(tyn_device *dev, const tyn_pipeline *from, const uint32_t *spec, bool check)
+static bool measure(tyn_device *dev, const tyn_pipeline *from, const uint32_t *variant, bool check)
 {
     const tyn_kernel *k = from->kernel;
+    uint32_t spec[TYN_MAX_SPEC];
+    constants_of_card(k, variant, spec);
     tyn_pipeline *to = NULL;
     VkPipeline made = VK_NULL_HANDLE;
     bool cached = false;
@@ -292,7 +328,7 @@ static bool measure(tyn_device *dev, const tyn_pipeline *from, const uint32_t *s
     }
     const size_t bytes = specialised_size(k, spec);
     if (check) {
-        return is_within(k->name, constants, bytes, &last);
+        return check_limits(k->name, constants, bytes, &last);
     }
     printf("%s,%s,%zu,%.1f,%.0f,%.0f,%.0f,%.0f,%.0f,%.0f\n", k->name, constants, bytes, ms,
            last.registers, last.spilled, last.waves, last.code, last.scratch, last.shared);
@@ -325,6 +361,14 @@ static bool render(tyn_device *dev, const char *method, const char *name, const 
     return fine;
 }
 
+static bool open_loader(void)
+{
+    void *loader = dlopen("libvulkan.so.1", RTLD_NOW);
+    void *function = loader ? dlsym(loader, "vkGetInstanceProcAddr") : NULL;
+    memcpy(&real_get, &function, sizeof real_get);
+    return function != NULL;
+}
+
 int main(int argc, char **argv)
 {
     const bool check = argc > 1 && strcmp(argv[1], "--check") == 0;
@@ -333,36 +377,32 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: kernels [--check] DEVICE METHOD SCENE...\n");
         return 2;
     }
-    void *loader = dlopen("libvulkan.so.1", RTLD_NOW);
-    void *function = loader ? dlsym(loader, "vkGetInstanceProcAddr") : NULL;
-    memcpy(&real_get, &function, sizeof real_get);
     const tyn_log log = {.fn = say};
     tyn_device *from = NULL, *to = NULL;
     bool fine =
-        real_get &&
+        open_loader() &&
         tyn_device_open(tyn_device_open_params(.select = "llvmpipe", .log = log), &from) == TYN_OK;
     for (int i = first + 2; fine && i < argc; i++) {
         fine = render(from, argv[first + 1], argv[i], &log);
     }
     keeps_statistics = true;
-    if (fine && tyn_device_open(tyn_device_open_params(.select = argv[first], .log = log,
+    const bool there =
+        fine && tyn_device_open(tyn_device_open_params(.select = argv[first], .log = log,
                                                        .get_instance_proc_addr = get_function),
-                                &to) != TYN_OK) {
-        tyn_device_destroy(&from);
-        skip_all("no device %s", argv[first]);
-    }
-    uint32_t wrong = 0;
-    if (fine && !check) {
-        printf("kernel,constants,bytes,compile_ms,registers,spilled,waves,"
-               "code_bytes,scratch_"
-               "bytes,shared_bytes\n");
-    }
-    for (uint32_t i = 0; fine && i < from->num_pipelines; i++) {
+                                &to) == TYN_OK;
+    for (uint32_t i = 0; there && i < from->num_pipelines; i++) {
         for (const tyn_variant *v = from->pipelines[i]->variants; v; v = v->next) {
-            wrong += !measure(to, from->pipelines[i], v->spec, check);
+            fine = measure(to, from->pipelines[i], v->spec, check) && fine;
         }
     }
-    tyn_device_destroy(
-        &from); // not `to`: Mesa's driver without a card ends the process in vkDestroyDevice
-    return !fine ? 2 : check && wrong ? 1 : 0;
+    fine = fine && (!check || !there || check_marks());
+    tyn_device_destroy(&from); // not `to`: Mesa's driver without a card ends in vkDestroyDevice
+    if (fine && !there && check) {
+        skip_all("no device %s", argv[first]);
+    }
+    if (!there) {
+        fprintf(stderr, "kernels: no device %s with VK_KHR_pipeline_executable_properties\n",
+                argv[first]);
+    }
+    return fine && there ? 0 : 1;
 }
