@@ -429,16 +429,16 @@ static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs
     }
 }
 
-// A node that makes the same as `n`: of the same pass, params and inputs, which nobody has changed since. NULL: there is none,
-// or it depends on more than these.
+// An earlier node with the pass, params and inputs of `n`, whose outputs nobody has changed since. NULL: there is none. A pass that
+// settles or holds depends on frames before as well, one with INOUT ports on what it changes.
 static node *find_same(const tyn_graph *g, const node *n)
 {
     const tyn_pass_desc *pass = n->pass;
-    bool shared = !pass->settles && !pass->holds;
+    bool can_share = !pass->settles && !pass->holds;
     for (uint32_t p = 0; p < pass->num_ports; p++) {
-        shared = shared && pass->ports[p].dir != TYN_INOUT;
+        can_share = can_share && pass->ports[p].dir != TYN_INOUT;
     }
-    for (uint32_t i = 0; shared && g->nodes + i < n; i++) {
+    for (uint32_t i = 0; can_share && g->nodes + i < n; i++) {
         node *other = &g->nodes[i];
         bool same = other->pass == pass && !memcmp(other->params, n->params, pass->params_size);
         for (uint32_t p = 0; same && p < pass->num_ports; p++) {
@@ -453,7 +453,7 @@ static node *find_same(const tyn_graph *g, const node *n)
     return NULL;
 }
 
-// In the place of the newest node.
+// Drops the newest node, and gives the outputs of `same`.
 static void share_node(tyn_graph *g, node *same, tyn_ref *refs)
 {
     g->params_used = (uint32_t)g->nodes[--g->num_nodes].params_offset;

@@ -229,7 +229,7 @@ vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_
                  inout march_shadows shadow, inout vec3 single)
 {
     vec3 light = vec3(0.0);
-    // Selections, as a loop that runs no time stays in the module (specialize.h).
+    // Selections, as a loop whose trip count is a constant 0 stays in the module (specialize.h).
     if (raymarch_num_suns > 0u) {
         for (uint n = 0u; n < raymarch_num_suns; n++) {
             float lit = 1.0;

@@ -134,7 +134,8 @@ typedef struct tyn_view {
     const float (*points)[3]; // PROBE: world positions
     uint32_t num_points;
     bool scattered_only; // PROBE: without the uncollided light
-    // Progressive methods: more samples follow before anybody looks. Pictures may be left as they were (refined).
+    // Progressive methods: more samples follow before anybody looks. Pictures are undefined until a record without it (refined):
+    // not together with COMPOSITE or images of the host's.
     bool unfinished;
     // Frame number of a sequence: importance.smoothing takes a step when it changes.
     uint64_t time_index;

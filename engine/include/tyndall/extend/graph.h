@@ -33,8 +33,8 @@ TYN_API tyn_ref tyn_graph_upload_image(tyn_graph *g, const char *name, tyn_dim d
 
 // Adds a node. `refs` has pass->num_ports elements: IN and INOUT are filled by the caller ({0} for an
 // absent optional one), OUT and INOUT are set to their new versions (OUT that does not exist: {0}).
-// `params` is copied. What makes the same as an earlier node, with the same pass, params and inputs, is that node, unless it
-// has INOUT ports.
+// `params` is copied. An earlier node with the same pass, params and inputs is reused, unless the pass has INOUT ports, settles or
+// holds: its outputs are then not to be changed in place while another holder reads them.
 TYN_API tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params,
                                  tyn_ref *refs);
 
