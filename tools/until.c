@@ -58,7 +58,7 @@ int until_render(app *a, renderer *r, const tyn_scene *scene, const tyn_view *vi
     float reached = INFINITY;
     int code = EXIT_DONE;
     *samples = 0;
-    while (code == EXIT_DONE && *samples < view->num_samples && reached > error) {
+    while (code == EXIT_DONE && *samples < view->num_samples && !(reached <= error)) {
         tyn_view part = *view;
         const uint32_t left = view->num_samples - *samples, next = *samples ? *samples : FIRST;
         part.outputs |= TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;

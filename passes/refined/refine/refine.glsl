@@ -99,7 +99,15 @@ refine_sums refine_add(refine_sums a, refine_sums b, float w)
 
 const refine_sums REFINE_NO_SUMS = refine_sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0));
 
-// Sums of squares of what pop's picture, and it with that share of the change, are off: unbiased, and below 0 by noise.
+// Variances of both of refine_squares, where the change counts by its share.
+vec2 refine_doubt(vec2 excess, float share)
+{
+    const float root = mix(sqrt(excess.x), sqrt(excess.y), share);
+    return vec2(excess.x, root * root);
+}
+
+// Estimated square errors of pop, and of pop with that share of the change; below 0 by noise. For a fit that is given they are
+// unbiased.
 vec2 refine_squares(refine_sums s, float share)
 {
     const float pop = s.residual - s.noise;

@@ -22,7 +22,7 @@ vec3 coefficients(uint plane, vec2 at)
 void main()
 {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, args.picture)) || args.unfinished != 0u) { // then the fit is of one group
+    if (any(greaterThanEqual(pixel, args.picture)) || args.unfinished != 0u) { // an unfinished record fits one group only
         return;
     }
     const vec4 base = texelFetch(base_tex, ivec2(pixel), 0);

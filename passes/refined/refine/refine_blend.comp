@@ -15,7 +15,7 @@ layout(binding = 5, rgba32f) uniform image2D error_image;
 void main()
 {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, args.picture)) || args.unfinished != 0u) { // then the fit is of one group
+    if (any(greaterThanEqual(pixel, args.picture)) || args.unfinished != 0u) { // an unfinished record fits one group only
         return;
     }
     const ivec2 tiles = ivec2((args.picture + 7u) / 8u);

@@ -1,7 +1,7 @@
 // refine_errors.comp -- how far pop and the refined picture are off, in tiles: mean squares as in refine_sums. A thread a tile.
 //
-// What a part's samples differ by from a fit of the others, less their own variance, is an unbiased estimate of the fit's mean
-// square error, but for few samples a noisy one: it is weighed, by its standard error, with what the whole picture leads to expect.
+// What a part's samples differ by from a fit of the others, less their own variance, estimates the fit's mean square error, with few
+// samples a noisy one: it is weighed, by its standard error, with the whole picture's.
 #include "refine.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -30,8 +30,8 @@ void main()
     }
     const float n = 3.0 * sum.cells, share = totals.share; // three channels
     const vec2 before = totals.expected * max(sum.light / n, 1e-6);
-    const vec2 trust = before * before * n * n / max(REFINE_TAIL * excess, 1e-30);
-    vec2 errors = (refine_squares(sum, share) / n * trust + before) / (trust + 1.0);
+    const vec2 sure = before * before, unsure = REFINE_TAIL * refine_doubt(excess, share) / (n * n);
+    vec2 errors = mix(before, refine_squares(sum, share) / n, sure / max(sure + unsure, 1e-30));
     errors = max(errors, 0.04 * before);
     errors.y = max(errors.y, share * share * sum.spread / n);
     imageStore(errors_image, tile, vec4(errors, 0.0, 0.0));

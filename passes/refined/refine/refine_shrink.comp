@@ -7,16 +7,16 @@ TYN_READ(0, sums, refine_sums sums[]);
 TYN_UPDATE(1, totals, refine_totals totals);
 shared refine_sums part[64];
 
-// Posterior mean of a mean square of which samples found `found`, which may be below 0, with that variance; all in units of the light.
-// Errors of .1 to 106 % of the light are looked at.
+// Posterior mean of a squared relative error, given its estimate, which may be below 0, and that one's variance.
 float expected(float found, float variance)
 {
     float most = -1e30, weights = 0.0, sum = 0.0;
+    const bool told = !isnan(found) && !isinf(found) && !isnan(variance);
     for (int pass = 0; pass < 2; pass++) {
-        for (int k = -28; k <= 12; k++) {
-            const float u = 0.25 * float(k);
-            const float error = REFINE_PRIOR * exp(REFINE_PRIOR_SPREAD * u), off = found - error * error;
-            const float likely = -0.5 * (u * u + off * off / max(variance, 1e-30));
+        for (int k = -56; k <= 24; k++) { // errors of .1 to 106 %
+            const float u = 0.125 * float(k);
+            const float error = REFINE_PRIOR * exp(REFINE_PRIOR_SIGMA * u), off = told ? found - error * error : 0.0;
+            const float likely = -0.5 * (u * u + off * off / (told ? max(variance, 1e-30) : 1.0));
             const float weight = exp(likely - most);
             if (pass == 0) {
                 most = max(most, likely);
@@ -46,7 +46,7 @@ void main()
         const float doubt = args.margin * args.margin * sum.doubt / max(sum.confirmed, 1e-30);
         const float share = sum.confirmed > 0.0 ? clamp((sum.confirmed - doubt) / max(sum.change, 1e-30), 0.0, 1.0) : 0.0;
         const vec2 found = refine_squares(sum, share) / max(sum.light, 1e-20);
-        const vec2 variance = REFINE_TAIL * sum.excess / max(sum.light * sum.light, 1e-30);
+        const vec2 variance = REFINE_TAIL * refine_doubt(sum.excess, share) / max(sum.light * sum.light, 1e-30);
         totals.share = share;
         totals.expected.x = expected(found.x, variance.x);
         totals.expected.y = share > 0.0 ? min(expected(found.y, variance.y), totals.expected.x) : totals.expected.x;

@@ -112,6 +112,8 @@ static const float (*run(gpu_test *t, const fit_case *f))[4]
     add_kept(t, &params, refs);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_refine, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "radiance", refs[REFINE_PORT_RADIANCE], true);
+    tyn_graph_output(t->graph, "error", refs[REFINE_PORT_ERROR], true);
+    tyn_graph_output(t->graph, "bias", refs[REFINE_PORT_BIAS], true);
     tyn_graph_output(t->graph, "counters", refs[REFINE_PORT_COUNTERS], true);
     gpu_run(t);
     return (const float(*)[4])gpu_map(t, "radiance");
@@ -163,6 +165,43 @@ static void layers_times_coefficients(void **state)
         assert_true(within(off_by(&cases[i], run(*state, &cases[i]), brighter, -0.4), 1e-3, NULL,
                            "coefficients found, relative L1"));
     }
+}
+
+static void make_black(int channel)
+{
+    for (uint32_t p = 0; p < MOST * MOST; p++) {
+        base[p][channel] = single[p][channel] = samples[p][channel] = 0;
+    }
+}
+
+// Root mean square of a layer.
+static double size_of(gpu_test *t, const char *layer, const fit_case *f)
+{
+    const float(*v)[4] = (const float(*)[4])gpu_map(t, layer);
+    double sum = 0;
+    for (uint32_t i = 0; i < 3 * f->width * f->height; i++) {
+        assert_true(isfinite(v[i / 3][i % 3]));
+        sum += (double)v[i / 3][i % 3] * (double)v[i / 3][i % 3];
+    }
+    return sqrt(sum / (3 * f->width * f->height));
+}
+
+// Light of one colour is refined as any other, and of a black picture too the errors are numbers.
+static void black_channels(void **state)
+{
+    const fit_case *f = &cases[1];
+    make_layers(f);
+    make_samples(f, brighter, -0.4, 0);
+    make_black(1);
+    assert_true(within(off_by(f, run(*state, f), brighter, -0.4), 3e-4, NULL,
+                       "coefficients found without green, relative L1"));
+    const double error = size_of(*state, "error", f), bias = size_of(*state, "bias", f);
+    assert_true(error < 0.1 * bias);
+    make_black(0);
+    make_black(2);
+    run(*state, f);
+    size_of(*state, "error", f);
+    size_of(*state, "bias", f);
 }
 
 // Samples that say what the picture says change no bit of it.
@@ -301,6 +340,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_times_coefficients),
+        cmocka_unit_test(black_channels),
         cmocka_unit_test(nothing_new),
         cmocka_unit_test(no_samples),
         cmocka_unit_test(a_ramp),
