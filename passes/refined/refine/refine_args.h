@@ -59,7 +59,8 @@ struct refine_sums {
     float residual;  // residual of a part squared: pop's error and noise
     float noise;     // variance of a part
     float spread;    // variance of the change, by leaving out parts
-    tyn_vec2 excess; // squares of a cell's estimated square error: of pop, and of pop with the whole change
+    tyn_vec2
+        excess; // squares of a cell's estimated square error: of pop, and of pop with the whole change
 };
 TYN_ASSERT_SIZE(refine_sums, 40);
 
