@@ -1,5 +1,6 @@
 // devices.c -- the Vulkan devices of this machine.
 #include "devices.h"
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { MAX_DEVICES = 16 };
@@ -27,7 +28,11 @@ void devices_finish(devices *d)
 
 char *devices_describe(const tyn_device_info *info)
 {
-    return text_format("%s, Vulkan %u.%u.%u, driver %s, heap %.1f GiB, %s%s", info->type,
+    char threads[48] = "";
+    if (!info->capacity.software) {
+        snprintf(threads, sizeof threads, ", %u threads", info->capacity.threads);
+    }
+    return text_format("%s%s, Vulkan %u.%u.%u, driver %s, heap %.1f GiB, %s%s", info->type, threads,
                        VK_API_VERSION_MAJOR(info->api_version),
                        VK_API_VERSION_MINOR(info->api_version),
                        VK_API_VERSION_PATCH(info->api_version), info->driver,

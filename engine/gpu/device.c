@@ -203,6 +203,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
         return TYN_ERR_MEMORY;
     }
     tyn_device_describe(&dev->vk, dev->physical_device, &dev->properties, dev->driver);
+    dev->capacity = tyn_device_capacity(&dev->vk, dev->physical_device);
     dev->vk.GetPhysicalDeviceMemoryProperties(dev->physical_device, &dev->memory);
     VkImageFormatProperties image = {.maxResourceSize = 0};
     const VkResult known = dev->vk.GetPhysicalDeviceImageFormatProperties(

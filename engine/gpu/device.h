@@ -27,6 +27,7 @@ struct tyn_device {
     tyn_procs vk;
     VkPhysicalDeviceProperties properties;
     char driver[256];
+    tyn_capacity capacity;
     VkPhysicalDeviceMemoryProperties memory;
     tyn_allocator allocator; // of the host, or none
     uint32_t timestamp_bits; // 0: no timestamps
@@ -72,6 +73,9 @@ typedef struct tyn_pipeline_params {
 
 void tyn_device_describe(const tyn_procs *vk, VkPhysicalDevice device,
                          VkPhysicalDeviceProperties *properties, char driver[256]);
+
+// capacity.c: by what the driver tells, else by the kind of device.
+tyn_capacity tyn_device_capacity(const tyn_procs *vk, VkPhysicalDevice device);
 
 // Shared by tyn_device_create and tyn_device_open: loads functions, makes samplers, cache and compiler.
 tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,

@@ -354,7 +354,8 @@ int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
         dev.vk.GetPhysicalDeviceMemoryProperties(devices[i], &memory);
         infos[i] = (tyn_device_info){.api_version = c.properties.apiVersion,
                                      .type = kinds[kind_of(&c)].name,
-                                     .heap_bytes = memory.memoryHeaps[0].size};
+                                     .heap_bytes = memory.memoryHeaps[0].size,
+                                     .capacity = tyn_device_capacity(&dev.vk, devices[i])};
         snprintf(infos[i].name, sizeof infos[i].name, "%s", c.properties.deviceName);
         snprintf(infos[i].driver, sizeof infos[i].driver, "%s", c.driver);
         snprintf(infos[i].missing, sizeof infos[i].missing, "%s", c.missing ? c.missing : "");

@@ -353,6 +353,9 @@ TAP_VOID(GetPhysicalDeviceMemoryProperties,
          (VkPhysicalDevice p, VkPhysicalDeviceMemoryProperties *out), (p, out), OTHERS)
 TAP_VOID(GetPhysicalDeviceQueueFamilyProperties,
          (VkPhysicalDevice p, uint32_t *n, VkQueueFamilyProperties *out), (p, n, out), OTHERS)
+TAP(EnumerateDeviceExtensionProperties,
+    (VkPhysicalDevice p, const char *layer, uint32_t *n, VkExtensionProperties *out),
+    (p, layer, n, out), *n = 0x7fffffff, (void)0)
 TAP_VOID(GetPhysicalDeviceFormatProperties,
          (VkPhysicalDevice p, VkFormat f, VkFormatProperties *out), (p, f, out), OTHERS)
 TAP(GetPhysicalDeviceImageFormatProperties,

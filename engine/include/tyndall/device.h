@@ -104,12 +104,19 @@ TYN_API uint32_t tyn_device_validation_messages(const tyn_device *dev);
 TYN_API const char *tyn_device_name(const tyn_device *dev);
 TYN_API const char *tyn_device_driver(const tyn_device *dev);
 
+// How much a device does at once. Dispatches are sized by it (<tyndall/extend/dispatch_sizes.h>).
+typedef struct tyn_capacity {
+    bool software;    // a processor
+    uint32_t threads; // that a card holds at once, a power of two; 0 of a processor
+} tyn_capacity;
+
 // Lists devices of this machine: fills up to `max` entries, returns how many there are (or < 0).
 typedef struct tyn_device_info {
     char name[256], driver[256], missing[256]; // missing: first unmet requirement, "" = usable
     uint32_t api_version;
     const char *type; // "discrete", "integrated", "virtual", "cpu", "other"
     uint64_t heap_bytes;
+    tyn_capacity capacity;
 } tyn_device_info;
 TYN_API int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log);
 
