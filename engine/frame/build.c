@@ -92,9 +92,8 @@ static void choose_storage(tyn_context *ctx)
     tyn_setting storage;
     tyn_settings_get(ctx->settings, "medium.storage", &storage, NULL);
     // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
-    const bool half = strcmp(storage.word, "auto")
-                          ? !strcmp(storage.word, "half")
-                          : ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+    const bool half =
+        strcmp(storage.word, "auto") ? !strcmp(storage.word, "half") : !ctx->dev->capacity.software;
     ctx->atlas.half &= half;
     ctx->colors.half = half && !has_albedo(ctx->scene);
 }
@@ -123,7 +122,7 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         TYN_TRY(update_points(ctx, view));
     }
     *job = (tyn_job){.method = &ctx->method->info,
-                     .cpu_device = ctx->dev->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,
+                     .capacity = ctx->dev->capacity,
                      .scene = frame->scene,
                      .view = view,
                      .settings = ctx->settings,

@@ -9,53 +9,92 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what a path costs ------------------------------------------------------------------------
-
-// Threads of a dispatch: most, and of one whose paths are long.
-enum { THREADS = 16384, THREADS_LONG = 1024 };
-
-static const double RECORD_NS = 1e9; // of all dispatches of a record
-
 // ---- parameters -------------------------------------------------------------------------------
 
+static uint32_t size_of(const tyn_job *job, tyn_dispatch_size which)
+{
+    return tyn_dispatch_size_of(&job->capacity, which);
+}
+
+// Pixels or points.
+static double count_elements(const tyn_job *job, const tyn_pass_desc *pass)
+{
+    const tyn_view *view = job->view;
+    return pass == &tyn_pass_path_probe ? view->num_points : (double)view->width * view->height;
+}
+
+// Threads of a dispatch, by halves: they are part of the frame's structure.
+static uint32_t count_threads(const tyn_job *job, const tyn_pass_desc *pass, bool homogeneous)
+{
+    const uint32_t least = size_of(job, TYN_SIZE_PATH_LONG);
+    const double cost = tyn_path_cost_ns(job, homogeneous),
+                 most = count_elements(job, pass) * size_of(job, TYN_SIZE_PATH_SLOTS);
+    uint32_t threads = size_of(job, TYN_SIZE_PATH_THREADS);
+    while (threads > least && threads * cost > tyn_path_dispatch_ns(job)) {
+        threads /= 2;
+    }
+    return threads < most ? threads : (uint32_t)most;
+}
+
+// Of a tracing pass; `threads` are those of images and probes.
 static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_desc *pass)
 {
     tyn_settings_params(job->settings, pass, p);
     tyn_path_scene(job, p);
-    p->threads = THREADS; // by halves: they are part of the frame's structure
-    while (p->threads > THREADS_LONG &&
-           p->threads * tyn_path_cost_ns(job, p->homogeneous) > TYN_PATH_DISPATCH_NS) {
-        p->threads /= 2;
-    }
+    p->threads = p->threads ? p->threads : count_threads(job, pass, p->homogeneous);
 }
 
-// A sample of fluxes. Few threads with many paths each: those that have their last path wait for the longest.
-enum { FLUX_THREADS = 512, FLUX_SAMPLE_PATHS = 8 };
+// Balance: paths of a sample in each of its dispatches, within these as many as there is time for.
+enum { BALANCE_CHUNKS = 1, SOLID_CHUNKS = 4, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
 
-// Of a thread in one dispatch.
-static double flux_paths(const tyn_job *job, bool homogeneous)
+static void set_balance_params(tyn_path_params *p, const tyn_job *job)
 {
-    return TYN_PATH_DISPATCH_NS / (tyn_path_cost_ns(job, homogeneous) * FLUX_THREADS);
+    set_params(p, job, &tyn_pass_path_balance);
+    const double paths = tyn_path_dispatch_ns(job) / tyn_path_cost_ns(job, p->homogeneous);
+    p->chunks = p->triangles ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
+    p->threads = size_of(job, TYN_SIZE_BALANCE_THREADS);
+    p->paths = paths < CHUNK_MIN ? CHUNK_MIN : paths > CHUNK_MAX ? CHUNK_MAX : (uint32_t)paths;
 }
 
-static uint32_t batch(const tyn_job *job)
+// Fluxes: of a sample. On a processor few threads have many each: those that have their last path wait for the longest.
+enum { FLUX_PATHS = 4096 };
+
+// ---- what a record may be asked for -----------------------------------------------------------
+
+typedef struct sample_work {
+    double paths;    // of a sample
+    double together; // of these in a dispatch
+    double most;     // samples
+} sample_work;
+
+static sample_work work_of(const tyn_job *job, tyn_path_params *p)
 {
     if (job->outputs & TYN_OUTPUT_BALANCE) {
-        return 1;
+        set_balance_params(p, job);
+        return (sample_work){(double)p->paths * p->chunks, p->paths,
+                             size_of(job, TYN_SIZE_BALANCE_SAMPLES)};
     }
-    tyn_path_params p;
     if (job->outputs & TYN_OUTPUT_FLUXES) {
-        set_params(&p, job, &tyn_pass_path_fluxes);
-        double samples = flux_paths(job, p.homogeneous) / FLUX_SAMPLE_PATHS;
-        return samples < 1 ? 1 : (uint32_t)fmin(samples, 1024);
+        set_params(p, job, &tyn_pass_path_fluxes);
+        return (sample_work){FLUX_PATHS, FLUX_PATHS, 1024};
     }
-    bool probes = job->outputs & TYN_OUTPUT_PROBE;
-    set_params(&p, job, probes ? &tyn_pass_path_probe : &tyn_pass_path);
-    double elements = probes ? job->view->num_points : (double)job->view->width * job->view->height;
-    double cost = tyn_path_cost_ns(job, p.homogeneous);
-    double samples = fmin(TYN_PATH_DISPATCH_NS / (cost * fmin(elements, p.threads)),
-                          RECORD_NS / (cost * elements));
-    return samples < 1 ? 1 : samples > 1e6 ? 1000000 : (uint32_t)samples;
+    const tyn_pass_desc *pass =
+        job->outputs & TYN_OUTPUT_PROBE ? &tyn_pass_path_probe : &tyn_pass_path;
+    set_params(p, job, pass);
+    const double elements = count_elements(job, pass);
+    return (sample_work){elements, fmin(elements, p->threads), 1e6};
+}
+
+// Samples of a record that keep its dispatches and itself short.
+static uint32_t batch(const tyn_job *job)
+{
+    tyn_path_params p;
+    const sample_work work = work_of(job, &p);
+    const double cost = job->sample_ms > 0 ? 1e6 * job->sample_ms / work.paths
+                                           : tyn_path_cost_ns(job, p.homogeneous);
+    const double samples = fmin(tyn_path_dispatch_ns(job) / (cost * work.together),
+                                1e6 * size_of(job, TYN_SIZE_RECORD_MS) / (cost * work.paths));
+    return samples < 1 ? 1 : (uint32_t)fmin(samples, work.most);
 }
 
 // ---- nodes ------------------------------------------------------------------------------------
@@ -181,21 +220,12 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
     }
 }
 
-// One `sample` of a balance is a dispatch of some thousand paths: as many as the time limit allows.
 static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
-    enum { BALANCE_CHUNKS = 1, SOLID_CHUNKS = 4, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
-    set_params(&params, job, &tyn_pass_path_balance);
+    set_balance_params(&params, job);
     set_box(&params, job->frame);
     set_lamp_power(&params, job->frame);
-    double paths = TYN_PATH_DISPATCH_NS / tyn_path_cost_ns(job, params.homogeneous);
-    params.chunks = params.triangles ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
-    params.threads = 4096;
-    params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
-                         : paths > CHUNK_MAX ? CHUNK_MAX
-                                             : (uint32_t)paths;
-    params.first_sample *= params.chunks * params.num_samples;
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {
         [PATH_BALANCE_PORT_STATE] =
             tyn_graph_history_buffer(g, "path_balance", sizeof(struct path_balance_state), 1),
@@ -235,15 +265,17 @@ static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_fluxes);
     set_box(&params, job->frame);
-    params.threads = FLUX_THREADS;
+    params.threads = size_of(job, TYN_SIZE_FLUX_THREADS);
     // A record's structure may not depend on the number of its samples.
-    double paths = flux_paths(job, params.homogeneous);
+    const uint32_t each = FLUX_PATHS / params.threads;
+    const double paths =
+        tyn_path_dispatch_ns(job) / (tyn_path_cost_ns(job, params.homogeneous) * params.threads);
     params.chunks = 1;
-    while (params.chunks < FLUX_SAMPLE_PATHS && params.chunks * paths < FLUX_SAMPLE_PATHS) {
+    while (params.chunks < each && params.chunks * paths < each) {
         params.chunks *= 2;
     }
-    params.first_sample *= FLUX_SAMPLE_PATHS;
-    params.num_samples *= FLUX_SAMPLE_PATHS / params.chunks;
+    params.first_sample *= each;
+    params.num_samples *= each / params.chunks;
     tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {
         [PATH_FLUXES_PORT_STATE] =
             tyn_graph_history_buffer(g, "path_fluxes", sizeof(struct path_fluxes_state), 1),

@@ -15,6 +15,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
     return TYN_OK;
 }
 
+// `paths` of each of `num_samples` samples in each of `chunks` dispatches. Paths are numbered sample by sample, so that a record of
+// several samples follows those of as many records.
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_path_params *p = params;
@@ -28,19 +30,20 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t kinds = !p->triangles                                      ? 2
                            : spec[TYN_PATH_SPEC_FLAGS] & TYN_PATH_FROM_LIGHTS ? 4
                                                                               : 3;
-    const uint32_t groups = p->num_samples > kinds ? p->num_samples / kinds : 1;
-    const uint32_t before = p->first_sample / p->num_samples;
+    const uint32_t each = p->paths > kinds ? p->paths / kinds : 1; // groups of a sample
+    const uint32_t groups = each * p->num_samples;
     const uint32_t threads = groups < p->threads ? groups : p->threads;
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+        const uint32_t before = each * (p->first_sample * p->chunks + chunk * p->num_samples);
         struct path_args args = path_trace_args(p, 0, 1, threads);
         args.num_samples = groups * kinds;
-        args.first_sample = (before + chunk) * args.num_samples;
+        args.first_sample = before * kinds;
         TYN_DISPATCH(r, .kernel = KERNEL_PATH_BALANCE, .cells = {threads, 1, 1}, .args = &args,
                      .spec = spec);
         struct path_resolve_args sum = {
             .num = 1,
             .slots = threads,
-            .samples_before = (before + chunk) * groups,
+            .samples_before = before,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
         TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1},

@@ -76,11 +76,11 @@ static float reduced_extinction(const tyn_frame_scene *frame, int32_t similarity
 // Photons of a dispatch, by powers of two: as many as the time limit allows.
 static uint32_t batch_of(const tyn_job *job, const tyn_photon_trace_params *p)
 {
-    enum { LEAST = 1024, MOST = 65536 };
+    const uint32_t most = tyn_dispatch_size_of(&job->capacity, TYN_SIZE_PHOTONS_MOST);
     const double cost = 4 * tyn_path_cost_ns(job, false);
     const double all = (double)p->photons * p->generations;
-    uint32_t batch = LEAST;
-    while ((batch < MOST && 2 * batch * cost < TYN_PATH_DISPATCH_NS) ||
+    uint32_t batch = tyn_dispatch_size_of(&job->capacity, TYN_SIZE_PHOTONS_LEAST);
+    while ((batch < most && 2 * batch * cost < tyn_path_dispatch_ns(job)) ||
            batch * (double)TYN_PHOTON_DISPATCHES < all) {
         batch *= 2;
     }

@@ -45,7 +45,8 @@ typedef struct tyn_path_params {
     float world[3][3];      // probes: the world's axes in M
     float lamp_power[3];    // balance: of the lamps inside, W
     float box[2][3];        // balance of surfaces: corners of the box around everything, M
-    uint32_t chunks;        // balance: dispatches of num_samples paths each; fluxes: of each thread
+    uint32_t paths;         // balance: of a sample in each of its dispatches
+    uint32_t chunks;        // balance: dispatches; fluxes: of num_samples paths of each thread
 } tyn_path_params;
 
 // By what directions are drawn beside the phase function.

@@ -301,7 +301,8 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
     s->params.first_sample = 0;
     s->params.chunks = 4;
     s->params.threads = 1024;
-    s->params.num_samples = samples / s->params.chunks;
+    s->params.num_samples = 1;
+    s->params.paths = samples / s->params.chunks;
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_balance, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "balance", refs[PATH_BALANCE_PORT_BALANCE], true);
     tyn_graph_output(t->graph, "result", refs[PATH_BALANCE_PORT_RESULT], true);

@@ -127,7 +127,7 @@ check()
         lowest["extend/graph.h"] = 2
         lowest["extend/method.h"] = lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 2.3
         lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 2.6
-        lowest["extend/path_scene.h"] = 4
+        lowest["extend/path_scene.h"] = lowest["extend/dispatch_sizes.h"] = 4
         lowest["extend/sources.h"] = lowest["extend/limits.h"] = 5
         lowest["extend/field.h"] = 6
         lowest["extend/view.h"] = 7
@@ -138,7 +138,7 @@ check()
         tier["registry.h"] = 4
         tier["offline.h"] = 5
         tier["extend/hash.h"] = 0
-        tier["extend/map_light.h"] = 2
+        tier["extend/map_light.h"] = tier["extend/dispatch_sizes.h"] = 2
         tier["extend/lattice_shape.h"] = 3
         tier["extend/graph.h"] = 4
         tier["extend/refs.h"] = tier["extend/frame_scene.h"] = 5

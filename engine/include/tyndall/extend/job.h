@@ -57,9 +57,12 @@ typedef struct tyn_job {
     const tyn_settings *settings;  // for tyn_settings_params
     const tyn_frame_scene *frame;  // the scene in M
     tyn_scene_refs refs;
+    // Of the device. Beside sizes of dispatches: a processor reads uniform arrays thread by thread.
+    tyn_capacity capacity;
+    // Where tyn_method.batch is asked: milliseconds of a sample of this picture, measured; 0: not known.
+    double sample_ms;
     uint32_t outputs; // set of tyn_output that is wanted, all of them in method->outputs
     bool readback;    // copy the outputs to host memory
-    bool cpu_device;  // the device is a processor: it reads uniform arrays thread by thread
     bool half_view;   // COMPOSITE: the host's colour image is twice as large as the view
     // SINGLE and MULTIPLE may be interpolated where the picture is smooth.
     bool sparse_layers;
