@@ -55,7 +55,7 @@ const tyn_pass_desc tyn_pass_path = {
     .summary = "unbiased path tracing, progressive",
     TYN_PASS_TABLES(tyn_path_params),
     .of_pixels = true,
-    TYN_SETTINGS(path_params_table),
+    TYN_SETTINGS(path_split_params_table),
     .debug_port = PATH_PORT_ERROR,
     .debug_meaning = "standard error of each pixel",
     TYN_COUNTS(PATH_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),

@@ -45,7 +45,7 @@ const tyn_pass_desc tyn_pass_path_probe = {
     .name = "path_probe",
     .summary = "unbiased fluence and net flux at points, progressive",
     TYN_PASS_TABLES(tyn_path_params),
-    TYN_SETTINGS(path_params_table),
+    TYN_SETTINGS(path_split_params_table),
     .debug_port = PATH_PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and net flux",
     TYN_COUNTS(PATH_PROBE_PORT_COUNTERS, struct counters_block, TYN_COUNTERS),

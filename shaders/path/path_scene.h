@@ -15,7 +15,7 @@ typedef struct tyn_path_params {
     uint32_t first_sample, num_samples; // per pixel or point; 0 starts the statistics anew
     uint32_t max_depth;                 // longest path, scatterings; 0 = no limit
     uint32_t rr_depth;                  // Russian roulette from here on; 0 = 4
-    uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
+    uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit; 0 = 16384
     uint32_t homogeneous; // one shape and no density grid
     uint32_t num_shapes;
     uint32_t sphere;    // the only shape is one
@@ -52,17 +52,24 @@ typedef struct tyn_path_params {
 // By what directions are drawn beside the phase function.
 enum { TYN_PATH_GUIDE_NONE, TYN_PATH_GUIDE_LIGHTS, TYN_PATH_GUIDE_FIELD };
 
-enum { PATH_NUM_PARAMS = 3 };
-static const tyn_param path_params_table[PATH_NUM_PARAMS] = {
-    {"guide", TYN_PARAM_INT, offsetof(tyn_path_params, guide), TYN_PATH_GUIDE_FIELD, 0, 2, "",
-     "what directions are drawn by beside a forward phase function (g > 0.65): 0 nothing, 1 a "
-     "light, 2 pop's field in images, but a light among surfaces, in periodic and thin media and "
-     "with tables",
-     NULL},
-    {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "",
-     "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL},
-    {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000,
-     "steps", "safety cap of one path; cut paths are counted", NULL},
+// clang-format off
+#define PATH_PARAMS \
+    {"guide", TYN_PARAM_INT, offsetof(tyn_path_params, guide), TYN_PATH_GUIDE_FIELD, 0, 2, "", \
+     "what directions are drawn by beside a forward phase function (g > 0.65): 0 nothing, 1 a " \
+     "light, 2 pop's field in images, but a light among surfaces, in periodic and thin media and " \
+     "with tables", NULL}, \
+    {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "", \
+     "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL}, \
+    {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000, \
+     "steps", "safety cap of one path; cut paths are counted", NULL}
+// clang-format on
+
+static const tyn_param path_params_table[] = {PATH_PARAMS};
+// Of passes whose results do not depend on the number of threads, but for rounding.
+static const tyn_param path_split_params_table[] = {
+    PATH_PARAMS,
+    {"threads", TYN_PARAM_INT, offsetof(tyn_path_params, threads), 0, 0, 1048576, "",
+     "of a dispatch, at most; 0 = by the device", NULL},
 };
 
 // Elements (pixels, points) are worked off in tiles of at most `threads`; where there are fewer, several
