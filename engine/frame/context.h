@@ -6,7 +6,7 @@
 #include "graph/graph.h"
 #include "scene/env_suns.h"
 
-enum { MAX_WARNINGS = 32 };
+enum { MAX_WARNINGS = 32, MAX_IN_FLIGHT = 8 };
 
 // Of an image that a picture is gone on from.
 typedef struct tyn_resumed_image {
@@ -41,6 +41,11 @@ struct tyn_context {
     uint64_t phase_hash;    // of the tables that they are of; 0: none
     tyn_surface_data surfaces;
     tyn_resumed_image resumed[6]; // tyn_view.resume
+    // Records that have added samples to the picture, by their number (tyn_graph_records).
+    struct {
+        uint64_t number;
+        uint32_t samples;
+    } sampled[MAX_IN_FLIGHT];
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
     uint64_t logged[MAX_WARNINGS]; // hashes of those that went to the log: once each
@@ -69,6 +74,11 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
 void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *refs);
 // declare.c: all of these, and then the method's nodes.
 tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame);
+
+// pace.c: notes the samples of the frame that was recorded last; and gives the milliseconds of a sample of the view's picture, by
+// the newest record that is over, which had so many. 0: there is none.
+void tyn_frame_sampled(tyn_context *ctx, const tyn_frame *frame);
+double tyn_frame_sample_ms(tyn_context *ctx, const tyn_view *view, uint32_t *samples);
 
 // A line among the report's warnings, once each; `user` is the context.
 void tyn_context_warn(void *user, const char *line);

@@ -183,8 +183,9 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
     uint32_t batch = tyn_context_batch(off->context, &frame);
     uint32_t samples = view->num_samples ? view->num_samples : 1;
-    // Every record of the frame gets the same shape of work, so that it is prepared once.
-    part.num_samples = batch < samples ? batch : samples;
+    const bool several =
+        batch < samples; // records, whose nodes and shapes are the same: it is prepared once
+    part.num_samples = several ? batch : samples;
     double start = tyn_now_ms();
     tyn_result result = tyn_context_prepare(off->context, &frame);
     if (result == TYN_OK) {
@@ -202,11 +203,12 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
         frame.recompute = recompute && done == 0;
         part.first_sample = view->first_sample + done;
+        batch = done ? tyn_context_batch(off->context, &frame) : batch;
         part.num_samples = samples - done < batch ? samples - done : batch;
         part.unfinished = off->makes_pictures && done + part.num_samples < samples;
         result = submit(off, &frame);
         off->samples += result == TYN_OK ? part.num_samples : 0;
-        if (result == TYN_OK && samples > batch) {
+        if (result == TYN_OK && several) {
             const double fraction = (double)(done + part.num_samples) / samples;
             add_record(off);
             bool go_on = !off->progress || off->progress(off->progress_user, fraction);

@@ -43,7 +43,9 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
     TYN_TRY(tyn_frame_declare(ctx, frame));
     TYN_TRY(tyn_frame_check_content(ctx, frame));
     tyn_graph_mode(ctx->graph)->yields = ctx->sizes == tyn_frame_sizes(ctx, frame);
-    return tyn_graph_record(ctx->graph, frame->cmd);
+    TYN_TRY(tyn_graph_record(ctx->graph, frame->cmd));
+    tyn_frame_sampled(ctx, frame);
+    return TYN_OK;
 }
 
 void tyn_context_forget(tyn_context *ctx)
@@ -65,8 +67,15 @@ uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
         tyn_frame_build(ctx, frame, &job) != TYN_OK) {
         return 1;
     }
-    uint32_t batch = ctx->method->batch(&job);
-    return batch ? batch : 1;
+    // On a processor estimates are good enough, and records of the same samples give the same bits.
+    enum { STEP = 8 };
+    uint32_t samples, most = UINT32_MAX;
+    job.sample_ms = job.capacity.software ? 0 : tyn_frame_sample_ms(ctx, frame->view, &samples);
+    if (job.sample_ms > 0 && samples < most / STEP) {
+        most = STEP * samples;
+    }
+    const uint32_t batch = ctx->method->batch(&job);
+    return batch < 1 ? 1 : batch > most ? most : batch;
 }
 
 tyn_result tyn_context_light(const tyn_context *ctx, float world_to_texture[16])

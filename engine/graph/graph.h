@@ -106,6 +106,11 @@ typedef struct tyn_node_stats {
 VkImageAspectFlags graph_aspect(VkFormat format);
 // Collects the timestamps of the last finished record; call after its fence.
 uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats);
+// Records so far.
+uint64_t tyn_graph_records(const tyn_graph *g);
+// The newest record that is over, by number from 1 on: the host comes to record i + frames_in_flight once the GPU has finished
+// record i. `ms`: its nodes' time, without those of the media alone and aids. 0: there is none, or it has no time.
+uint64_t tyn_graph_finished(tyn_graph *g, double *ms);
 void tyn_graph_memory(const tyn_graph *g, uint64_t *persistent, uint64_t *transient);
 
 // Text or Graphviz of the compiled graph: nodes, resources, lifetimes, barriers, what is culled and

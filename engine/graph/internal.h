@@ -125,9 +125,10 @@ typedef struct node_run { // of a node
 typedef struct frame_slot { // one per frame in flight
     VkDescriptorPool pool;
     VkQueryPool queries;
-    bool pending;   // timestamps were written
-    uint8_t *timed; // per node: it ran in this slot's last record
-    uint64_t made;  // graph.frame when the pools were made
+    bool pending;    // timestamps were written
+    uint8_t *timed;  // per node: it ran in this slot's last record
+    double frame_ms; // of the nodes that ran in it for the frame's sake; 0: not known (yet)
+    uint64_t made;   // graph.frame when the pools were made
 } frame_slot;
 
 typedef struct retire_list {

@@ -341,6 +341,8 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     run->stats.dispatches = r.dispatches;
     run->stats.barriers = r.barriers;
     run->stats.num_work = r.num_work;
+    run->stats.media_only = n->media_only;
+    run->stats.aid = n->aid;
     memcpy(run->stats.work, r.work, sizeof r.work);
     return r.result;
 }
@@ -404,6 +406,7 @@ static void collect_timestamps(tyn_graph *g, frame_slot *slot)
         return;
     }
     bool all = true;
+    double frame_ms = 0;
     uint64_t mask =
         g->dev->timestamp_bits == 64 ? UINT64_MAX : (1ull << g->dev->timestamp_bits) - 1;
     for (uint32_t i = 0; i < g->num_runs; i++) {
@@ -413,13 +416,34 @@ static void collect_timestamps(tyn_graph *g, frame_slot *slot)
         }
         if (g->dev->vk.GetQueryPoolResults(g->dev->device, slot->queries, i * 2, 2, sizeof t, t, 8,
                                            VK_QUERY_RESULT_64_BIT) == VK_SUCCESS) {
-            g->runs[i].stats.gpu_ms = (double)((t[1] - t[0]) & mask) *
-                                      (double)g->dev->properties.limits.timestampPeriod * 1e-6;
+            tyn_node_stats *stats = &g->runs[i].stats;
+            stats->gpu_ms = (double)((t[1] - t[0]) & mask) *
+                            (double)g->dev->properties.limits.timestampPeriod * 1e-6;
+            frame_ms += stats->media_only || stats->aid ? 0 : stats->gpu_ms;
         } else {
             all = false; // not finished: ask again later
         }
     }
     slot->pending = !all;
+    slot->frame_ms = all ? frame_ms : 0;
+}
+
+uint64_t tyn_graph_records(const tyn_graph *g)
+{
+    return g->frame;
+}
+
+uint64_t tyn_graph_finished(tyn_graph *g, double *ms)
+{
+    *ms = 0;
+    if (!g->num_runs || g->frame < g->num_slots) {
+        return 0;
+    }
+    const uint64_t number = g->frame + 1 - g->num_slots;
+    frame_slot *slot = &g->slots[(number - 1) % g->num_slots];
+    collect_timestamps(g, slot);
+    *ms = slot->frame_ms;
+    return *ms > 0 ? number : 0;
 }
 
 tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
@@ -464,6 +488,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
     }
     record_imports_after(&rec);
     slot->pending = true;
+    slot->frame_ms = 0;
     g->frame++;
     return result;
 }

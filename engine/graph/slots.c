@@ -88,6 +88,7 @@ tyn_result graph_create_slots(tyn_graph *g, const survey *s)
         free(slot->timed);
         slot->timed = calloc(g->num_timed, 1);
         slot->pending = false;
+        slot->frame_ms = 0;
         result = result == TYN_OK && !slot->timed ? TYN_ERR_MEMORY : result;
     }
     return result;

@@ -254,7 +254,7 @@ typedef struct tyn_report {
 TYN_API void tyn_context_report(tyn_context *ctx, tyn_report *report);
 
 // Progressive methods: the most samples that one record should be asked for, so that no dispatch runs
-// long (>= 1). Others: 1. After prepare.
+// long (>= 1). Others: 1. After prepare; on a card anew before each record, as it follows the times of those before.
 TYN_API uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame);
 
 // What one pass made, for looking at: the image at its debug port (`tyndall info --passes`).
