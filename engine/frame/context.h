@@ -75,8 +75,8 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
 // declare.c: all of these, and then the method's nodes.
 tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame);
 
-// pace.c: notes the samples of the frame that was recorded last; and gives the milliseconds of a sample of the view's picture, by
-// the newest record that is over, which had so many. 0: there is none.
+// pace.c: notes the samples of the frame that was recorded last; and gives the milliseconds of a sample of the view's picture by
+// the newest finished record, and how many that had. 0: there is none.
 void tyn_frame_sampled(tyn_context *ctx, const tyn_frame *frame);
 double tyn_frame_sample_ms(tyn_context *ctx, const tyn_view *view, uint32_t *samples);
 

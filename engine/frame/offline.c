@@ -183,8 +183,7 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
     uint32_t batch = tyn_context_batch(off->context, &frame);
     uint32_t samples = view->num_samples ? view->num_samples : 1;
-    const bool several =
-        batch < samples; // records, whose nodes and shapes are the same: it is prepared once
+    const bool several = batch < samples; // records of one structure: it is prepared once
     part.num_samples = several ? batch : samples;
     double start = tyn_now_ms();
     tyn_result result = tyn_context_prepare(off->context, &frame);

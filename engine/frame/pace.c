@@ -2,7 +2,7 @@
 #include "frame/context.h"
 #include <string.h>
 
-// Does the frame add to no samples before? Another camera, or scene, takes another time.
+// True if the frame starts the statistics anew. Another camera, or scene, takes another time.
 static bool begins(const tyn_view *view)
 {
     return view->first_sample == 0 ||

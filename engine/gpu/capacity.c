@@ -7,7 +7,7 @@
 #include <string.h>
 
 // Of cards that do not tell; and bounds of those that do, should one tell nonsense.
-enum { DISCRETE = 262144, OTHER = 65536, LEAST = 4096, MOST = 1 << 20 };
+enum { DISCRETE = 262144, OTHER = 8192, LEAST = 4096, MOST = 1 << 20 };
 
 typedef struct extension_list {
     VkExtensionProperties *items;
@@ -55,8 +55,8 @@ static void ask(VkPhysicalDeviceProperties2 *all, const extension_list *list, co
 // What an extension that the device lacks leaves at 0 makes its product 0.
 static double threads_told(const tyn_procs *vk, VkPhysicalDevice device, const extension_list *list)
 {
-    VkPhysicalDeviceVulkan11Properties core = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceSubgroupProperties core = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     VkPhysicalDeviceShaderSMBuiltinsPropertiesNV nv = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV};
     VkPhysicalDeviceShaderCorePropertiesAMD amd = {

@@ -92,8 +92,11 @@ static uint32_t batch(const tyn_job *job)
     const sample_work work = work_of(job, &p);
     const double cost = job->sample_ms > 0 ? 1e6 * job->sample_ms / work.paths
                                            : tyn_path_cost_ns(job, p.homogeneous);
-    const double samples = fmin(tyn_path_dispatch_ns(job) / (cost * work.together),
-                                1e6 * size_of(job, TYN_SIZE_RECORD_MS) / (cost * work.paths));
+    // A card of another kind may be far slower than foretold.
+    const double part = job->sample_ms > 0 || job->capacity.software ? 1 : 0.125;
+    const double samples =
+        part * fmin(tyn_path_dispatch_ns(job) / (cost * work.together),
+                    1e6 * size_of(job, TYN_SIZE_RECORD_MS) / (cost * work.paths));
     return samples < 1 ? 1 : (uint32_t)fmin(samples, work.most);
 }
 

@@ -37,8 +37,8 @@ static bool is_forward(const tyn_job *job)
     return most > 0.65f;
 }
 
-// Two cores trace as many paths as a card that holds so many threads would, at most: by an NVIDIA H200's times 490 in `room`, 10 to
-// 200 in seven other scenes. Twice the most, as nothing is measured yet.
+// Threads of a card that equal two cores: 490 in `room`, 10 to 200 in seven other scenes (NVIDIA H200). With twice the most a
+// picture's first record is rather too short.
 static const double THREADS_OF_TWO_CORES = 1000;
 
 // Nanoseconds of a path on two cores of a software device: measured 90 for the unit cube at sigma_s 4, 700 for a
@@ -82,8 +82,11 @@ static double software_cost_ns(const tyn_job *job, bool homogeneous)
 
 double tyn_path_cost_ns(const tyn_job *job, bool homogeneous)
 {
+    enum { LEAST_NS = 20 }; // of a path that meets nothing
     const double cost = software_cost_ns(job, homogeneous);
-    return job->capacity.software ? cost : cost * THREADS_OF_TWO_CORES / job->capacity.threads;
+    return job->capacity.software
+               ? cost
+               : fmax(cost, LEAST_NS) * THREADS_OF_TWO_CORES / job->capacity.threads;
 }
 
 double tyn_path_dispatch_ns(const tyn_job *job)
