@@ -440,7 +440,8 @@ static node *find_same(const tyn_graph *g, const node *n)
     }
     for (uint32_t i = 0; can_share && g->nodes + i < n; i++) {
         node *other = &g->nodes[i];
-        bool same = other->pass == pass && !memcmp(other->params, n->params, pass->params_size);
+        bool same = other->pass == pass &&
+                    (!pass->params_size || !memcmp(other->params, n->params, pass->params_size));
         for (uint32_t p = 0; same && p < pass->num_ports; p++) {
             const bool in = pass->ports[p].dir == TYN_IN;
             same = in ? other->res[p] == n->res[p] && other->versions[p] == n->versions[p]
