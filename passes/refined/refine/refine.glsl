@@ -73,16 +73,17 @@ bool refine_finite(vec3 v)
     return !any(isnan(v)) && !any(isinf(v));
 }
 
-// 1 / radiance: squares with this weight are a share of the light, and not of each pixel's.
-vec3 refine_weight(vec3 pop, vec3 mean)
-{
-    return 1.0 / (max(pop, 0.0) + 0.05 * mean + 1e-20);
-}
-
 // Light that residuals are kept in units of, as it may change from picture to picture.
 vec3 refine_unit(vec3 pop, vec3 mean)
 {
-    return 1.0 / refine_weight(pop, mean);
+    return max(pop, 0.0) + 0.05 * mean + 1e-20;
+}
+
+// 1 / radiance: squares with this weight are a share of the light, and not of each pixel's. None in a channel that is black
+// throughout, in which there is nothing to compare.
+vec3 refine_weight(vec3 pop, vec3 mean)
+{
+    return mix(vec3(0.0), 1.0 / refine_unit(pop, mean), greaterThan(mean, vec3(1e-18)));
 }
 
 refine_changes refine_add_changes(refine_changes a, refine_changes b, float w)

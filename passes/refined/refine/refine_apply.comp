@@ -39,7 +39,7 @@ void main()
     light = max(light, 0.0);
     imageStore(radiance_image, ivec2(pixel), vec4(light, base.a));
     const vec2 squares = textureLod(errors_tex, at / float(REFINE_TILE) / vec2(textureSize(errors_tex, 0)), 0.0).rg;
-    const vec3 unit = totals.mean / refine_weight(light, totals.mean);
+    const vec3 unit = totals.mean * refine_unit(light, totals.mean);
     imageStore(bias_image, ivec2(pixel), vec4(sqrt(squares.x * unit) + args.known * light, 0.0));
     imageStore(error_image, ivec2(pixel), vec4(sqrt(squares.y * unit) + args.known * light, 0.0));
 }

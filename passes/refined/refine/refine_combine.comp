@@ -44,8 +44,7 @@ void main()
         }
     }
     const refine_cell_values v = refine_values(near);
-    // Of channels with light. In a black one there is nothing to compare, and its weight overflows.
-    const vec3 w = mix(vec3(0.0), v.weight / (totals.mean + 1e-20), greaterThan(totals.mean, vec3(1e-18)));
+    const vec3 w = v.weight / (totals.mean + 1e-20);
     vec3 change[REFINE_PARTS], all_change = vec3(0.0), all_residual = vec3(0.0);
     refine_fit fit = none;
     for (uint k = 0u; k < uint(REFINE_PARTS); k++) {
