@@ -68,7 +68,6 @@ static int print_balance(app *a, const tyn_balance *balance, bool json)
         {"suns", balance->scale_suns},
         {"lamps", balance->scale_lamps},
         {"vpls", balance->scale_vpls},
-        {"walls", balance->scale_walls},
     };
     enum { FIRST_END = 2 }; // of the rows that say where light ends, three
     const char *names[3];

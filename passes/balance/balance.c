@@ -30,7 +30,6 @@ static void record(tyn_recorder *r, const void *params)
         .num_suns = p->num_suns,
         .num_groups = p->num_groups,
         .vpls = p->vpls,
-        .wall_light = tyn_rec_has(r, BALANCE_PORT_WALL_LIGHT_POWER),
         .num_leaks =
             tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
         .emitters = tyn_rec_has(r, BALANCE_PORT_EMITTERS),

@@ -9,7 +9,6 @@
 #include "shaders/surfaces/surface_table_args.h"
 #include "balance_args.h"
 #include "shaders/common/balance_result.h"
-#include "shaders/walls/wall_light_power.h"
 #include "shaders/lattice/lattice_power.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -32,7 +31,6 @@ TYN_UNIFORM(9, ordinates, ordinates_block ordinates);
 TYN_READ(10, wall_power, vec2 wall_power[]); // absorbed by a cell's walls, sent out by them; W
 TYN_READ(12, found, balance_light found[]);
 TYN_READ(13, emitters, surface_table emitters);
-TYN_READ(14, wall_light_power, wall_light_power wall_light);
 layout(constant_id = 0) const uint walls = 0;
 
 shared vec2 wall_sums[BALANCE_GROUP];
@@ -71,10 +69,10 @@ vec2 least_and_most(vec2 range, float scale)
     return scale != 0.0 ? with : range;
 }
 
-// The factors that make the cells lose what beams lose, and the walls get what VPLs send them.
+// The factors that make the cells lose what beams lose.
 void write_scales()
 {
-    vec2 ranges[TYN_BALANCE_SCALES] = vec2[TYN_BALANCE_SCALES](vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0));
+    vec2 ranges[TYN_BALANCE_SCALES] = vec2[TYN_BALANCE_SCALES](vec2(0.0), vec2(0.0), vec2(0.0));
     for (uint n = 0; n < args.num_suns * args.channels; n++) {
         ranges[0] = least_and_most(ranges[0], power[n].scale);
     }
@@ -82,9 +80,6 @@ void write_scales()
     for (uint n = 0; n < args.num_groups * args.channels; n++) {
         uint kind = n < num_lamps ? 1u : 2u;
         ranges[kind] = least_and_most(ranges[kind], lamp_power[n].scale);
-    }
-    if (args.wall_light == 1u && wall_light.rooms > 0u) {
-        ranges[3] = vec2(wall_light.least, wall_light.most);
     }
     for (uint k = 0; k < TYN_BALANCE_SCALES; k++) {
         scales[k] = uvec2[2](double_bits(ranges[k].x), double_bits(ranges[k].y));

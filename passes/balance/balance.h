@@ -29,7 +29,6 @@ typedef struct tyn_balance_params {
         "struct ordinates_block: of all light of a sky that surfaces hide"), \
     X(BALANCE, WALL_POWER, wall_power, OPTIONAL, BUFFER, "of lattice"), \
     X(BALANCE, LAMP_POWER, lamp_power, OPTIONAL, BUFFER, "of lattice_lamps"), \
-    X(BALANCE, WALL_LIGHT_POWER, wall_light_power, OPTIONAL, BUFFER, "of wall_light"), \
     TYN_BEAMS(X##_OPTIONAL, BALANCE), \
     TYN_RADIALS(X##_OPTIONAL, BALANCE), \
     TYN_GEOMETRY(X##_OPTIONAL, BALANCE), \

@@ -8,7 +8,6 @@ struct balance_args {
     tyn_uint num_leaks;    // per channel
     tyn_uint num_groups;   // of local lights
     tyn_uint vpls;         // 1: the last of them are virtual point lights
-    tyn_uint wall_light;   // 1: walls have light of these
     tyn_uint emitters;     // 1: there are surfaces that emit
     tyn_uint num_followed; // groups of balance_lights; 0: there are none
     tyn_uint sky;          // 1: the sky is one of them

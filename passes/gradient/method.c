@@ -112,18 +112,28 @@ static bool has_sky(const tyn_frame_scene *frame)
            frame->lights.num_suns > tyn_num_beams(&frame->lights);
 }
 
+static int32_t lattice_cells(const tyn_job *job)
+{
+    tyn_setting cells;
+    tyn_settings_get(job->settings, "lattice.cells", &cells, job->log);
+    return (int32_t)cells.value;
+}
+
 // All that shines. Suns and lamps have optical depths where the lattice is to carry on what they scatter.
 static void add_lights(tyn_graph *g, const tyn_job *job, bool multiple, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
     if (multiple) {
         tyn_add_beams(g, job, s);
-        tyn_add_vpls(g, job, s);
-        tyn_add_radials(g, job, s);
     }
     tyn_add_shadows(g, job, s);
     if (has_sky(frame) && !(frame->empty && !frame->num_triangles)) {
         tyn_add_whole_sky(g, job, s);
+    }
+    if (multiple) {
+        tyn_add_columns(g, job, lattice_cells(job), s);
+        tyn_add_vpls(g, job, s); // also of the sky that passes the columns
+        tyn_add_radials(g, job, s);
     }
 }
 
@@ -131,9 +141,7 @@ static void add_lights(tyn_graph *g, const tyn_job *job, bool multiple, tyn_sour
 // and sky that comes straight, which samples follow.
 static tyn_ref add_scattered(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_field *solved)
 {
-    tyn_setting cells;
-    tyn_settings_get(job->settings, "lattice.cells", &cells, job->log);
-    tyn_add_cells(g, job, (int32_t)cells.value, "lattice.cells", s);
+    tyn_add_cells(g, job, lattice_cells(job), "lattice.cells", s);
     tyn_solve_lattice(g, job, s, solved);
     tyn_sources before = *s;
     before.sky = (tyn_sky){{0}};

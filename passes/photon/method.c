@@ -32,7 +32,8 @@ static bool has_light(const tyn_frame_scene *frame)
 static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_view_inputs *view)
 {
     tyn_add_beams(g, job, s);
-    if (job->frame->num_triangles && job->outputs & TYN_PICTURE_OUTPUTS && tyn_vpls_bounce(job)) {
+    if (job->frame->num_triangles && job->outputs & TYN_PICTURE_OUTPUTS &&
+        tyn_surfaces_beyond(job)) {
         tyn_add_vpls(g, job, s);
     }
     tyn_add_radials(g, job, s);
@@ -58,7 +59,7 @@ static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, const 
     }
     tyn_job_warn_suns(job, "surfaces");
     const tyn_field no_field = {0};
-    const bool beyond = tyn_vpls_bounce(job);
+    const bool beyond = tyn_surfaces_beyond(job);
     if (beyond && tyn_is_lit(job->frame->environment.sky)) {
         tyn_job_warn(job,
                      "the environment does not light surfaces that reach far beyond the media");

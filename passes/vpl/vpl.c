@@ -12,10 +12,11 @@
 #define PORT(name) VPL_PORT_##name
 
 static const tyn_param params[] = {
-    {"count", TYN_PARAM_INT, offsetof(tyn_vpl_params, count), 128, 0, TYN_RADIAL_VPLS_MAX, "",
-     "lights at most that stand for what surfaces reflect first and emit"},
+    {"count", TYN_PARAM_INT, offsetof(tyn_vpl_params, count), 192, 0, TYN_RADIAL_VPLS_MAX, "",
+     "lights at most that stand for what surfaces emit and reflect; 0 = they light nothing"},
     {"visibility", TYN_PARAM_INT, offsetof(tyn_vpl_params, visibility), 16, 0, 64, "texels",
-     "along each side of the maps of what these lights see of the surfaces; 0 = all is lit"},
+     "along each side of the maps of what these lights see of the surfaces; 0 = all is lit, and "
+     "nothing is reflected twice"},
 };
 
 // Texels along each side of a map of distances; 0: none.
@@ -71,7 +72,7 @@ static uint32_t make_plan(const tyn_vpl_params *p, struct vpl_plan *plan)
 
 static bool bounces(const tyn_vpl_params *p, bool triangles)
 {
-    return p->bounces && p->count >= 2 && map_side(p, triangles);
+    return p->count >= 2 && map_side(p, triangles);
 }
 
 // Solid angle of a texel in the middle of a map: so that the power of all directions is the VPL's.
@@ -154,6 +155,7 @@ static void record(tyn_recorder *r, const void *data)
     struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
     memcpy(args.near_lo, p->near_lo, sizeof args.near_lo);
     memcpy(args.near_hi, p->near_hi, sizeof args.near_hi);
+    args.sky_irradiance = p->sky_irradiance;
     struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
     const tyn_dispatch see = {.kernel = KERNEL_DISTANCES,
                               .cells = tyn_rec_extent(r, PORT(VPL_DISTANCES)),
@@ -192,7 +194,7 @@ static void record(tyn_recorder *r, const void *data)
 
 const tyn_pass_desc tyn_pass_vpl = {
     .name = "vpl",
-    .summary = "what surfaces reflect first and emit, as virtual point lights (Keller 1997)",
+    .summary = "what surfaces emit and reflect, as virtual point lights (Keller 1997)",
     .serves = "surfaces that emit or are shone on, with virtual point lights (vpl.count)",
     TYN_PASS_TABLES(tyn_vpl_params),
     TYN_SETTINGS(params),

@@ -80,28 +80,30 @@ vec3 vpl_flux(vpl_block block, uint element)
     return emission * (VPL_PI * 0.5 * length(cross(b - a, c - a)));
 }
 
-// What elements are chosen by.
-float vpl_weight(vec3 flux)
-{
-    float w = flux.r + flux.g + flux.b;
-    return w > 0.0 && !isinf(w) ? w : 0.0; // also where it is no number
-}
-
 bool vpl_of_sky(vpl_block block)
 {
     return block.index < plan.front && block.map.light >= TYN_RSM_SKY;
 }
 
-// An element under the sky counts the less the farther it is from the box that pictures are of: what a ground sends to a wall of the
-// box's size falls with the third power of the distance. Else a ground of a kilometre had all VPLs and the box one below it.
-float vpl_nearness(vpl_block block, uint element, vec3 near_lo, vec3 near_hi)
+float vpl_power(vec3 flux)
 {
-    if (!vpl_of_sky(block)) {
-        return 1.0;
+    float w = flux.r + flux.g + flux.b;
+    return w > 0.0 && !isinf(w) ? w : 0.0; // also where it is no number
+}
+
+const float VPL_GREY = 0.3; // albedo: docs/measurements.md, "Constants"
+
+// What an element is chosen by, W: its power. Under the sky the geometric mean of its power and of what its area would send on in grey
+// and open; so dark corners have places, too. It falls with the third power of the distance to the box that pictures are of, as
+// the irradiance of a wall of the box's size does. Else a ground of a kilometre had all VPLs and the box one below it.
+float vpl_weight(vpl_block block, uint element, float power, vpl_args args)
+{
+    if (power <= 0.0 || !vpl_of_sky(block)) {
+        return power;
     }
-    vec3 p = texelFetch(rsm_position_tex, vpl_texel(block, element), 0).xyz;
-    float away = near_box_away(p, near_lo, near_hi), b = 1.0 + away * away;
-    return 1.0 / (b * sqrt(b));
+    vec4 place = texelFetch(rsm_position_tex, vpl_texel(block, element), 0);
+    float away = near_box_away(place.xyz, args.near_lo, args.near_hi), b = 1.0 + away * away;
+    return sqrt(power) * sqrt(VPL_GREY * place.w * args.sky_irradiance) / (b * sqrt(b));
 }
 
 // A piece of a surface: part of a triangle, or what a texel sees.

@@ -1,8 +1,8 @@
 // vpl_lights.comp -- one workgroup a VPL: the light that stands for a stratum of elements.
 //
-// The power of the stratum is the VPL's. Where it is and looks is the mean of those of its elements that
-// lie on one smooth piece of a surface with one that vpl_strata.comp has chosen, weighted by power: it does
-// not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
+// Its power is the stratum's: that of elements with about as much power for their weight as the one that vpl_strata.comp has
+// chosen, scaled to the weight of all. Where it is and looks is their mean over the elements that lie on one smooth piece of a
+// surface with that one, by weight: it does not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
 
 #define MEDIUM_AT 11
@@ -109,14 +109,20 @@ vec3 part_of(uint block, uint element, vpl_stratum stratum)
 // Does a piece go on from the centre's? Within some 20 degrees of its plane, facing the same way, and not
 // farther than connected pieces of that area reach: places on a Hilbert curve that an area A is between are sqrt(6 A) apart at
 // most (Bauman 2006), or farther where texels of a map are of unequal areas. In between, partly, so that nothing jumps
-// (docs/measurements.md, "Constants"). Nor where elements count for much more or less: the mean would be of those.
-float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area, float nearness)
+// (docs/measurements.md, "Constants").
+float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
 {
     float dd = dot(offset, offset);
     float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-36));
     return smoothstep(0.5, 0.8, dot(normal, centre_normal)) * (1.0 - smoothstep(0.15, 0.35, off)) *
-           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd)) *
-           (1.0 - smoothstep(0.4, 1.1, abs(log(max(nearness, 1e-30)))));
+           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd));
+}
+
+// Has an element's part about as much weight per power as the chosen one's? Elsewhere one's power says nothing of the other's.
+float alike_of(vpl_block block, uint element, vec3 part, float chosen)
+{
+    float power = (part.y - part.x) * vpl_power(vpl_flux(block, element));
+    return 1.0 - smoothstep(0.4, 1.1, abs(log(max(part.z, 1e-30) / max(power * chosen, 1e-30))));
 }
 
 void main()
@@ -137,7 +143,11 @@ void main()
     inside = clamp(inside, 0.0, 0.999);
     vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
 
+    // Of the chosen element, weight per power.
+    float chosen = max(weight_at, 1e-30) / max(vpl_power(vpl_flux(block, at)), 1e-30);
+
     vec4 flux = vec4(0.0); // and the area, m^2
+    vec2 counted = vec2(0.0); // weights: of what is in `flux`, of all
     for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
         if (blocks[i + 1u] > blocks[i]) {
             vpl_block b = vpl_block_at(i);
@@ -145,18 +155,16 @@ void main()
                 vec3 part = part_of(i, e, stratum);
                 float share = part.y - part.x;
                 if (share > 0.0) {
-                    flux.rgb += share * vpl_flux(b, e);
-                    flux.a += vpl_piece_of(b, e, vec2(0.0, share), 0u, 1u).area;
+                    float v = alike_of(b, e, part, chosen);
+                    flux += v * vec4(share * vpl_flux(b, e), vpl_piece_of(b, e, vec2(0.0, share), 0u, 1u).area);
+                    counted += part.z * vec2(v, 1.0);
                 }
             }
         }
     }
     flux = workgroup_total(flux);
-    // As much as if all of the stratum were as near as this place: else what is far would shine from near by.
-    float power = flux.r + flux.g + flux.b, nearness = vpl_nearness(block, at, args.near_lo, args.near_hi);
-    if (vpl_of_sky(block)) {
-        flux *= power > 0.0 ? (stratum.to - stratum.from) / (nearness * power) : 0.0;
-    }
+    counted = workgroup_total(vec4(counted, 0.0, 0.0)).xy;
+    flux *= counted.x > 0.0 ? counted.y / counted.x : 0.0;
 
     vec4 place = vec4(0.0);  // offset from the centre; weight
     vec4 normal = vec4(0.0); // normal; squared offset
@@ -166,12 +174,11 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
-                float near = pieces > 0u ? vpl_nearness(b, e, args.near_lo, args.near_hi) / nearness : 1.0;
+                float like = pieces > 0u ? alike_of(b, e, part, chosen) : 0.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
-                    float v = part.z / float(pieces);
-                    v *= same_piece(d, p.normal, centre.normal, flux.a, near);
+                    float v = part.z / float(pieces) * like * same_piece(d, p.normal, centre.normal, flux.a);
                     place += v * vec4(d, 1.0);
                     normal += v * vec4(p.normal, dot(d, d) + p.area / (2.0 * VPL_PI));
                 }
@@ -201,11 +208,11 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
-                float near = pieces > 0u ? vpl_nearness(b, e, args.near_lo, args.near_hi) / nearness : 1.0;
+                float like = pieces > 0u ? alike_of(b, e, part, chosen) : 0.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
-                    float v = same_piece(d, p.normal, centre.normal, flux.a, near);
+                    float v = like * same_piece(d, p.normal, centre.normal, flux.a);
                     above = max(above, min(v, 1.0) * dot(d - offset, light.direction));
                 }
             }

@@ -1,6 +1,4 @@
 // vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
-// They are power times nearness.
-
 #include "vpl_elements.glsl"
 
 layout(local_size_x = VPL_LANES) in;
@@ -20,7 +18,7 @@ void main()
     float own[EACH], sum = 0.0;
     for (uint i = 0u; i < EACH; i++) {
         uint e = EACH * lane + i;
-        sum += vpl_weight(vpl_flux(block, e)) * vpl_nearness(block, e, args.near_lo, args.near_hi);
+        sum += vpl_weight(block, e, vpl_power(vpl_flux(block, e)), args);
         own[i] = sum;
     }
     workgroup_cumulate(sum);

@@ -7,7 +7,7 @@
 #include "shared.h"
 
 #define TYN_BALANCE_ROWS 7   // of a number per channel
-#define TYN_BALANCE_SCALES 4 // suns, lamps, VPLs, walls: of the least and the most
+#define TYN_BALANCE_SCALES 3 // suns, lamps, VPLs: of the least and the most
 #define TYN_BALANCE_BYTES (8 * (3 * TYN_BALANCE_ROWS + 2 * TYN_BALANCE_SCALES))
 
 #ifndef __STDC__

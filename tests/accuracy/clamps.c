@@ -62,7 +62,7 @@ static clamps clamps_of(tyn_offline *off)
                         : !strcmp(node->name, "raymarch") ? &c.pixels
                         : !strcmp(node->name, "shade")    ? &c.places
                                                           : &c.texels;
-        for (uint32_t w = 0; w < node->num_work && strcmp(node->name, "wall_light"); w++) {
+        for (uint32_t w = 0; w < node->num_work; w++) {
             const char *name = node->work[w].name;
             const double amount = node->work[w].amount;
             *count += strcmp(name, "clamped") ? 0 : amount;

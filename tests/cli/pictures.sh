@@ -235,8 +235,8 @@ drawn smoke-sky -D lattice.cells=12
 has_nodes "no surfaces" k.json medium beam lattice merge raymarch
 lacks_nodes "no surfaces" k.json $raster $local shade walls wall_light
 drawn fog-hall -D vpl.count=0 -D lattice.cells=12
-has_nodes "surfaces, a sun and a sky" k.json shadow_map gbuffer shade walls wall_light beam lattice raymarch
-lacks_nodes "no lamps, no virtual ones" k.json rsm $local
+has_nodes "surfaces, a sun and a sky" k.json shadow_map gbuffer shade walls beam lattice raymarch
+lacks_nodes "no lamps, no virtual ones" k.json rsm wall_light $local
 drawn fog-hall --density-scale 0 --frames 3
 has_nodes "no medium" k.json $raster vpl shade raymarch
 lacks_nodes "no medium" k.json $field radial_beam lattice_lamps

@@ -2,7 +2,6 @@
 #include "gpu_test.h"
 #include "shaders/lattice/lattice_power.h"
 #include "shaders/light/ordinate_args.h"
-#include "shaders/walls/wall_light_power.h"
 #include "passes/balance/balance.h"
 #include "shaders/common/scene_args.h"
 #include <tyndall/context.h>
@@ -21,8 +20,7 @@ typedef struct setup {
     float cells[3][N][4], moments[3][N][4], source[3][N][4], leaks[3][LEAKS], walls[3][N][2];
     struct lattice_power power[SUNS * 3];
     struct lattice_lamp_power lamps[GROUPS * 3];
-    struct wall_light_power wall_light;
-    bool with_source, with_walls, with_wall_light;
+    bool with_source, with_walls;
 } setup;
 
 static float any(void)
@@ -62,7 +60,6 @@ static void fill(setup *s, uint32_t channels)
             s->lamps[n * 3 + c].scale = n == 0 && c == 0 ? 0 : any(); // no light there
         }
     }
-    s->wall_light = (struct wall_light_power){.rooms = 2, .least = any(), .most = 1 + any()};
     s->ordinates.count = 3;
     for (int n = 0; n < 3; n++) {
         struct ordinate *o = &s->ordinates.list[n];
@@ -109,10 +106,6 @@ static const tyn_balance *run(gpu_test *t, const setup *s)
     if (s->with_walls) {
         *gpu_port(pass, refs, "wall_power") =
             gpu_buffer(t, "wall_power", s->walls, channels * N * 2 * sizeof(float));
-    }
-    if (s->with_wall_light) {
-        *gpu_port(pass, refs, "wall_light_power") =
-            gpu_buffer(t, "wall_light", &s->wall_light, sizeof s->wall_light);
     }
     assert_int_equal(tyn_graph_add(t->graph, pass, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "balance", *gpu_port(pass, refs, "balance"), true);
@@ -186,7 +179,7 @@ static void widen(double range[2], double scale)
 // The factors by kind of light, those of no light left out.
 static void compare_scales(const setup *s, const tyn_balance *found)
 {
-    double suns[2] = {0}, lamps[2] = {0}, vpls[2] = {0}, walls[2] = {0};
+    double suns[2] = {0}, lamps[2] = {0}, vpls[2] = {0};
     for (uint32_t c = 0; c < s->params.channels; c++) {
         for (uint32_t n = 0; n < s->params.num_suns; n++) {
             widen(suns, (double)s->power[n * 3 + c].scale);
@@ -196,15 +189,10 @@ static void compare_scales(const setup *s, const tyn_balance *found)
             widen(vpl ? vpls : lamps, (double)s->lamps[n * 3 + c].scale);
         }
     }
-    if (s->with_wall_light) {
-        walls[0] = (double)s->wall_light.least;
-        walls[1] = (double)s->wall_light.most;
-    }
     for (int i = 0; i < 2; i++) {
         expect("factors of suns", found->scale_suns[i], suns[i]);
         expect("factors of lamps", found->scale_lamps[i], lamps[i]);
         expect("factors of VPLs", found->scale_vpls[i], vpls[i]);
-        expect("factors of walls", found->scale_walls[i], walls[i]);
     }
 }
 
@@ -218,7 +206,6 @@ static void sums(void **state)
         s.params.num_suns = variant == 1 ? 0 : SUNS;
         s.params.num_groups = variant == 0 ? 0 : GROUPS;
         s.params.vpls = variant >= 2 && variant != 4;
-        s.with_wall_light = variant == 3;
         const tyn_balance *found = run(*state, &s);
         compare(&s, found);
         compare_scales(&s, found);

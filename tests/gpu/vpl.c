@@ -212,7 +212,7 @@ static void set_quad(uint32_t i, float x, float side, uint32_t material)
 static void emitters(void **state)
 {
     start();
-    scene.params.count = 100;
+    scene.params.count = 160; // of which 100 are not kept for further reflections
     scene.params.emitters = 2;
     scene.materials[1] = (struct surface_material){.emission = {2, 1, 0}};
     scene.materials[2] =

@@ -1,4 +1,4 @@
-// wall_light.c -- light of suns and of virtual lights on the walls of the lattice's cells: as much as they send.
+// wall_light.c -- light of suns on the walls of a periodic lattice's cells: as much as they send.
 #include "bound.h"
 #include "gpu_test.h"
 #include "homogeneous.h"
@@ -45,7 +45,7 @@ static void wall_data_free(wall_data *d)
     free(d->cells);
 }
 
-// Adds what both kinds of light need. The medium is a cube of 1 m; `absorption` of it.
+// Connects all but the suns. The medium is a cube of 1 m; `absorption` of it.
 static void connect(gpu_test *t, const wall_data *d, float absorption, tyn_ref *refs,
                     tyn_wall_light_params *params)
 {
@@ -168,90 +168,8 @@ static void suns(void **state)
     }
 }
 
-// All that a light on one wall of an empty room sends arrives at the others; outside the room nothing does. With maps of
-// what the light sees, whose rays all end in the room here, what the walls send out is scaled to agree with it.
-static void virtual_lights(void **state)
-{
-    gpu_test *t = *state;
-    enum { MAPS = 16, SIDE = 8 }; // maps in a row, texels of a map
-    static float seen[MAPS * SIDE * MAPS * SIDE];
-    for (int i = 0; i < MAPS * SIDE * MAPS * SIDE; i++) {
-        seen[i] = 0.01f;
-    }
-    for (int variant = 0; variant < 4; variant++) {
-        const int k = variant % 2;
-        const bool scaled = variant >= 2;
-        grid g = grid_of(CELLS, CELLS, CELLS, 1.0 / CELLS);
-        mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.37, 0.31, 0.34}, k * 0.4);
-        wall_data d = walls_of(t, &g, &m);
-        // In the middle of a wall, facing inwards.
-        struct light_block light = {.kind = TYN_LIGHT_KIND_COSINE, .color = {2, 2, 2}};
-        double p[3], n[3];
-        for (int a = 0; a < 3; a++) {
-            p[a] = 0.5 * (m.tri[4][0][a] + m.tri[4][2][a]);
-            n[a] = 0.5 - p[a];
-        }
-        vector_normalise(n);
-        for (int a = 0; a < 3; a++) {
-            light.position[a] = (float)(p[a] + 1e-4 * n[a]);
-            light.direction[a] = (float)n[a];
-        }
-        struct radial_block lights = {.count = 1};
-        homogeneous_radial(&lights.list[0], (float[]){1, 1, 1}, &light);
-        const float zero = 0;
-        const struct light_block none = {.kind = 0};
-        tyn_wall_light_params params;
-        tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-        connect(t, &d, 0, refs, &params);
-        const tyn_pass_desc *pass = &tyn_pass_wall_light;
-        *gpu_port(pass, refs, "lights") = gpu_buffer(t, "lights", &none, sizeof none);
-        *gpu_port(pass, refs, "radials") = gpu_buffer(t, "radials", &lights, sizeof lights);
-        *gpu_port(pass, refs, "radial_column") =
-            gpu_image(t, "column", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 1, &zero);
-        if (scaled) {
-            *gpu_port(pass, refs, "vpl_distances") =
-                gpu_image(t, "vpl_distances", TYN_IMAGE_2D,
-                          (tyn_extent){MAPS * SIDE, MAPS * SIDE, 1}, 1, seen);
-        }
-        const float(*found)[3] = run(t, &params, refs);
-        int lit = 0;
-        for (int i = 0; i < N; i++) {
-            if (found[i][1] > 0 && lit++ % 50 == 0) {
-                bool out;
-                mesh_flood(&g, d.links, i, &out);
-                assert_false(out);
-            }
-        }
-        const double share = arriving(&d, found, 1) / (2 * pi);
-        printf("turned by %.1f: %.5f of the light arrives%s, at %d cells; %.2f ms\n", k * 0.4,
-               share, scaled ? ", scaled" : "", lit, gpu_ms(t, "wall_light"));
-        assert_true(scaled ? fabs(share - 1) <= 1e-5
-                           : within(fabs(share - 1), k ? 0.025 : 0.04, NULL, "VPLs, turn %d", k));
-        wall_data_free(&d);
-        mesh_free(&m);
-    }
-}
-
-static void nothing_shines(void **state)
-{
-    gpu_test *t = *state;
-    const grid g = grid_of(CELLS, CELLS, CELLS, 1.0 / CELLS);
-    mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.3, 0.3, 0.3}, 0);
-    wall_data d = walls_of(t, &g, &m);
-    tyn_wall_light_params params;
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-    connect(t, &d, 0, refs, &params);
-    *gpu_port(&tyn_pass_wall_light, refs, "lights") = gpu_buffer(t, "lights", d.links, 64);
-    t->quiet = true;
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_wall_light, &params, refs), TYN_ERR_PARAMS);
-    t->quiet = false;
-    wall_data_free(&d);
-    mesh_free(&m);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(suns), cmocka_unit_test(virtual_lights),
-                                       cmocka_unit_test(nothing_shines)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(suns)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

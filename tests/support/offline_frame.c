@@ -65,9 +65,8 @@ void offline_frame_check(tyn_offline *off, const tyn_view *view)
             assert_true(isfinite(b->imbalance[c] + b->imbalance_se[c]));
             assert_true(isfinite(b->entering[c] + b->emitted[c]));
         }
-        const double *const factors[] = {b->scale_suns, b->scale_lamps, b->scale_vpls,
-                                         b->scale_walls};
-        for (int k = 0; k < 4; k++) { // least and most, or none
+        const double *const factors[] = {b->scale_suns, b->scale_lamps, b->scale_vpls};
+        for (int k = 0; k < 3; k++) { // least and most, or none
             const double least = factors[k][0], most = factors[k][1];
             assert_true((least == 0 && most == 0) ||
                         (least > 0 && least <= most && isfinite(most)));

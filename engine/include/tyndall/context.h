@@ -79,7 +79,7 @@ typedef struct tyn_balance { // W, per channel
     double imbalance_se[3]; // its standard error (path), else 0
     // Least and most of the factors that make what the lattice gets of these lights agree with what they
     // send (pop); 0, 0: there are none.
-    double scale_suns[2], scale_lamps[2], scale_vpls[2], scale_walls[2];
+    double scale_suns[2], scale_lamps[2], scale_vpls[2];
 } tyn_balance;
 
 // Where light of suns and surroundings goes that enters the media's box, along the axes of that box; with

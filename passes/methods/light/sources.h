@@ -11,5 +11,5 @@ void tyn_put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_t d
 bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides);
 // Links that surfaces cut, and which cells are joined (shaders/walls/rooms.h). Nothing without surfaces near the media.
 void tyn_add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
-// What walls reflect of light that is not the lattice's.
+// Sunlight that the walls of a periodic lattice reflect.
 void tyn_add_wall_light(tyn_graph *g, const tyn_job *job, tyn_sources *s);

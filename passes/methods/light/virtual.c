@@ -7,6 +7,8 @@
 
 _Static_assert(2 * TYN_SHADOW_VIEWS <= TYN_VIEWS_SEEN, "a place for each view of both passes");
 
+static const float pi = 3.14159265f;
+
 // 0: nothing emits; 2: some materials on both sides.
 static uint32_t emitters(const tyn_surfaces *surfaces)
 {
@@ -36,64 +38,9 @@ bool tyn_reach_beyond(const tyn_frame_scene *frame, float sides)
     return beyond;
 }
 
-bool tyn_vpls_bounce(const tyn_job *job)
+bool tyn_surfaces_beyond(const tyn_job *job)
 {
     return job->frame->empty || tyn_reach_beyond(job->frame, 0.15f);
-}
-
-// The area of a triangle if it is outside the medium's box by more than `margin` and its front looks there, m^2.
-static float area_around(const tyn_frame_scene *frame, const tyn_surfaces *surfaces,
-                         const tyn_surface_triangle *t, float margin)
-{
-    const float *m = frame->m_from_world, *extent = frame->medium.extent;
-    float p[3][3], normal[3];
-    for (int k = 0; k < 3; k++) {
-        const float *w = surfaces->vertices[t->vertices[k]].position;
-        for (int a = 0; a < 3; a++) {
-            p[k][a] = m[a] * w[0] + m[4 + a] * w[1] + m[8 + a] * w[2] + m[12 + a];
-        }
-    }
-    for (int a = 0; a < 3; a++) {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        normal[a] = 0.5f * ((p[1][b] - p[0][b]) * (p[2][c] - p[0][c]) -
-                            (p[1][c] - p[0][c]) * (p[2][b] - p[0][b]));
-    }
-    const float area = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    bool around = false;
-    for (int a = 0; a < 3; a++) {
-        const float least = fminf(p[0][a], fminf(p[1][a], p[2][a]));
-        const float most = fmaxf(p[0][a], fmaxf(p[1][a], p[2][a]));
-        around = around || (most < -margin && normal[a] > 0.5f * area) ||
-                 (least > extent[a] + margin && normal[a] < -0.5f * area);
-    }
-    return around ? area : 0.0f;
-}
-
-// Do surfaces outside the medium's box look at it that have a twentieth of its area? Not the outsides of walls whose insides are
-// walls of the lattice.
-static bool stand_around(const tyn_job *job)
-{
-    const float *e = job->frame->medium.extent;
-    const float margin = 0.01f * fmaxf(e[0], fmaxf(e[1], e[2]));
-    const float enough = 0.1f * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
-    const tyn_surfaces *surfaces = &job->scene->surfaces;
-    float area = 0.0f;
-    for (uint32_t i = 0; i < surfaces->num_triangles && area < enough; i++) {
-        area += area_around(job->frame, surfaces, &surfaces->triangles[i], margin);
-    }
-    return area >= enough;
-}
-
-// tyn_vpls_bounce; or do surfaces stand around the box that reflect the sky, and are no walls of the lattice; or do they reach
-// beyond it and have the sky alone? Measured: in rooms that a sky lights through windows walls lose 4 to 8 % of it; in a hall
-// with a sun VPLs are too few for both.
-static bool carry_all(const tyn_job *job, const tyn_sources *s)
-{
-    const tyn_lights *lights = &job->frame->lights;
-    const bool alone = tyn_num_beams(lights) + lights->num_lamps == 0; // all VPLs are the sky's
-    return tyn_vpls_bounce(job) ||
-           (s->sky.maps.sky_maps.resource &&
-            ((alone && tyn_reach_beyond(job->frame, 0.01f)) || stand_around(job)));
 }
 
 // The area of a sun's texel across the light; the solid angle of a lamp's in the middle of its map.
@@ -111,12 +58,11 @@ static float texel_of(const struct shadow_light *l)
     return area;
 }
 
-// Do VPLs have what surfaces reflect first of the sky? Where they carry all reflections; where they do not, the lattice's walls
-// do.
+// The sky's light reaches surfaces once its columns are known.
 static bool reflects_sky(const tyn_job *job, const tyn_sources *s)
 {
     const bool passes = job->frame->empty || s->sky.columns.columns.resource;
-    return s->sky.maps.sky_maps.resource && passes && carry_all(job, s);
+    return s->sky.maps.sky_maps.resource && passes;
 }
 
 static void connect_sky(const tyn_job *job, const tyn_sources *s, tyn_rsm_params *params,
@@ -243,10 +189,10 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     params.num_suns = job->frame->lights.num_directional;
     params.num_triangles = job->frame->num_triangles;
     params.emitters = emitters(&job->scene->surfaces);
-    params.bounces = carry_all(job, s);
     memcpy(params.near_lo, job->frame->near_lo, sizeof params.near_lo);
     memcpy(params.near_hi, job->frame->near_hi, sizeof params.near_hi);
-    s->surface_light.bounces = params.bounces;
+    const float *mean = job->frame->environment.sky;
+    params.sky_irradiance = pi * (mean[0] + mean[1] + mean[2]);
     if (params.count == 0) {
         return;
     }
@@ -260,7 +206,7 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
         sky && rsm.num_tiles && rsm.tiles[rsm.num_tiles - 1].light >= TYN_RSM_SKY;
     if (!tyn_can_trace(job)) {
         tyn_job_warn(job, "the surfaces have no hierarchy: light that they reflect passes "
-                          "through other surfaces");
+                          "through other surfaces, and is reflected no second time");
         params.visibility = 0;
     }
     params.num_tiles = rsm.num_tiles;

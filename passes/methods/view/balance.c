@@ -50,7 +50,6 @@ void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         [BALANCE_PORT_LEAKS] = in->field->leaks,
         [BALANCE_PORT_WALL_POWER] = in->field->wall_power,
         [BALANCE_PORT_LAMP_POWER] = in->sources->lattice.lamp_power,
-        [BALANCE_PORT_WALL_LIGHT_POWER] = in->sources->walls.light_power,
     };
     follow_lights(job, in, &params, refs);
     tyn_graph_add(g, &tyn_pass_balance, &params, refs);

@@ -45,16 +45,14 @@ typedef struct tyn_surface_light {
     tyn_vpl_refs vpls; // {0} if surfaces send nothing on
     tyn_ref
         rooms; // cells of the lattice that are joined, and the VPLs in them; {0} without walls or VPLs
-    bool of_sky;  // what surfaces reflect of the sky is among the VPLs
-    bool bounces; // VPLs carry all reflections
+    bool of_sky; // what surfaces reflect of the sky is among the VPLs
 } tyn_surface_light;
 
 // Surfaces as the lattice sees them; {0} without.
 typedef struct tyn_walls {
     tyn_wall_refs cut;
-    tyn_ref hits;        // the triangles that cut links meet
-    tyn_ref light;       // what they reflect of light that is not the lattice's
-    tyn_ref light_power; // of virtual point lights, for the balance
+    tyn_ref hits;  // the triangles that cut links meet
+    tyn_ref light; // what they reflect of a periodic medium's suns
 } tyn_walls;
 
 // The cells of the lattice with their unscattered light: cubes that fill a box around the medium's (lattice_box_of of
@@ -135,9 +133,8 @@ TYN_API void tyn_add_columns(tyn_graph *g, const tyn_job *job, int32_t cells, ty
 TYN_API tyn_ref tyn_mean_environment(const tyn_job *job, const tyn_sources *s);
 // Groups of local lights that the lattice keeps apart (lattice_lamps).
 TYN_API uint32_t tyn_radial_groups(const tyn_lamps *lamps);
-// Do VPLs carry all reflections between surfaces? So they do where surfaces reach far beyond the medium's box, which
-// the lattice fills; else they carry the first, and the lattice's walls the others.
-TYN_API bool tyn_vpls_bounce(const tyn_job *job);
+// Do surfaces reach beyond the medium's box, which the lattice fills, by more than .15 of its longest side? True without a medium.
+TYN_API bool tyn_surfaces_beyond(const tyn_job *job);
 
 // What the lights shine on: reflective shadow maps of the same lights as tyn_add_shadows.
 typedef struct tyn_rsm {

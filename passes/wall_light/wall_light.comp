@@ -1,4 +1,4 @@
-// wall_light_suns.comp -- sunlight that arrives at the walls of a cell, as radiance they send out.
+// wall_light.comp -- sunlight that arrives at the walls of a cell, as radiance they send out.
 //
 // Each cut link along an axis stands for |n.axis| dx^2 of the wall that it meets (normal n): a wall of area A is
 // met by A |n.axis| / dx^2 links of an axis, so all areas add up to A. What arrives there, times albedo, is the
