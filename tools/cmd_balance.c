@@ -151,9 +151,8 @@ const command cmd_balance = {
         "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted). With\n"
         "--method path a sample (--spp) is some ten thousand paths, and imbalance_se is the\n"
         "standard error of the imbalance. Where there are surfaces the boundary is a box around\n"
-        "media, surfaces and lamps. `pop` scales what its cells and walls get of each light to "
-        "what\n"
-        "that sends: the last lines are these factors, least and most (docs/balance.md).",
+        "media, surfaces and lamps. `pop` scales what its cells get of each light to what it\n"
+        "sends: the last lines are these factors, least and most (docs/balance.md).",
     .positionals = positionals,
     .num_positionals = ARRAY_SIZE(positionals),
     .groups = groups,

@@ -147,8 +147,8 @@ const tyn_limit tyn_limits_pop[] = {
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_STRAINED,
      .advice =
-         {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 10 %% off; a room "
-          "behind a door 11 %%; walls far outside the medium 15 %%; vpl-cave 21 %%)"},
+         {"surfaces: virtual lights and voxels of walls (sample scenes 3 to 11 %% off; a room "
+          "behind a door 11 %%; walls far outside the medium 15 %%; vpl-cave 27 %%)"},
      .source = "docs/accuracy.md, \"Lamps and walls\""},
     {.key = "the sky among surfaces",
      .where = {TYN_ABOVE(sky_on_surfaces, 0.05)},

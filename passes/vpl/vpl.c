@@ -13,10 +13,11 @@
 
 static const tyn_param params[] = {
     {"count", TYN_PARAM_INT, offsetof(tyn_vpl_params, count), 192, 0, TYN_RADIAL_VPLS_MAX, "",
-     "lights at most that stand for what surfaces emit and reflect; 0 = they light nothing"},
-    {"visibility", TYN_PARAM_INT, offsetof(tyn_vpl_params, visibility), 16, 0, 64, "texels",
-     "along each side of the maps of what these lights see of the surfaces; 0 = all is lit, and "
+     "lights at most that stand for what surfaces emit and reflect; 0 = they light nothing, 1 = "
      "nothing is reflected twice"},
+    {"visibility", TYN_PARAM_INT, offsetof(tyn_vpl_params, visibility), 16, 0, 64, "texels",
+     "along each side of the maps of what these lights see of the surfaces; 0 = all is lit; "
+     "below 2 nothing is reflected twice"},
 };
 
 // Texels along each side of a map of distances; 0: none.

@@ -15,7 +15,7 @@ typedef struct tyn_vpl_params {
     uint32_t emitters; // 1: there are materials that emit; 2: some of them on both sides
     uint32_t num_triangles;
     float near_lo[3], near_hi[3]; // tyn_frame_scene.near_lo, near_hi
-    float sky_irradiance;         // mean over all directions, summed over channels, W/m^2
+    float sky_irradiance;         // on an open plane, summed over channels, W/m^2
     uint32_t num_tiles;           // of the reflective shadow maps
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_vpl_params;

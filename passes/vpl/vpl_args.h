@@ -41,6 +41,6 @@ struct vpl_args {
     tyn_uint
         append; // 1: VPLs are added to those that are there; 2: in place of those that were added last
     tyn_vec3 near_lo, near_hi; // M: VPLs are close together near this box
-    float sky_irradiance;      // mean over all directions, summed over channels, W/m^2
+    float sky_irradiance;      // on an open plane, summed over channels, W/m^2
 };
 TYN_ASSERT_SIZE(vpl_args, 44);

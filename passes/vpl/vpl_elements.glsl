@@ -93,9 +93,9 @@ float vpl_power(vec3 flux)
 
 const float VPL_GREY = 0.3; // albedo: docs/measurements.md, "Constants"
 
-// What an element is chosen by, W: its power. Under the sky the geometric mean of its power and of what its area would send on in grey
-// and open; so dark corners have places, too. It falls with the third power of the distance to the box that pictures are of, as
-// the irradiance of a wall of the box's size does. Else a ground of a kilometre had all VPLs and the box one below it.
+// What an element is chosen by, W: its power. Under the sky the geometric mean of that and of the power that its area would send on
+// in grey and open: dark corners have places, too. It falls with the third power of the distance to the box that pictures are of, as
+// what a ground sends to a wall of the box's size does. Else a ground of a kilometre had all VPLs and the box one below it.
 float vpl_weight(vpl_block block, uint element, float power, vpl_args args)
 {
     if (power <= 0.0 || !vpl_of_sky(block)) {
@@ -103,7 +103,8 @@ float vpl_weight(vpl_block block, uint element, float power, vpl_args args)
     }
     vec4 place = texelFetch(rsm_position_tex, vpl_texel(block, element), 0);
     float away = near_box_away(place.xyz, args.near_lo, args.near_hi), b = 1.0 + away * away;
-    return sqrt(power) * sqrt(VPL_GREY * place.w * args.sky_irradiance) / (b * sqrt(b));
+    float weight = sqrt(power) * sqrt(VPL_GREY * place.w) * sqrt(args.sky_irradiance) / (b * sqrt(b));
+    return weight < 1e38 ? weight : 0.0; // also where it is no number
 }
 
 // A piece of a surface: part of a triangle, or what a texel sees.

@@ -1,9 +1,12 @@
 // vpl_lights.comp -- one workgroup a VPL: the light that stands for a stratum of elements.
 //
-// Its power is the stratum's: that of elements with about as much power for their weight as the one that vpl_strata.comp has
-// chosen, scaled to the weight of all. Where it is and looks is their mean over the elements that lie on one smooth piece of a
-// surface with that one, by weight: it does not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
-// the power; light scattered forward counts as not scattered, as everywhere outside the march.
+// Its power is Z (1 - t) F_0 / W_0 + Z t F_1 / W_1: Z is the stratum's weight; F and W are power and weight of its elements, by
+// tents on c = log2(weight / power); t is where the chosen element lies between two tents. An element is chosen by its weight, so
+// the mean over choices is the stratum's power. Off the sky c is 0, and the power the stratum's.
+//
+// Where the VPL is and looks is the mean, by weight, of those elements that lie on one smooth piece of a surface with the chosen
+// one: it does not hang between two surfaces. What the medium takes from the light on its way to that place is taken from the
+// power; light scattered forward counts as not scattered, as everywhere outside the march.
 
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"
@@ -100,7 +103,7 @@ vec3 part_of(uint block, uint element, vpl_stratum stratum)
 {
     uint at = block * VPL_BLOCK + element;
     float before = element > 0u ? weights[at - 1u] : 0.0, after = weights[at];
-    vec2 w = blocks[block] + vec2(before, after);
+    vec2 w = blocks[block] + vec2(before, after); // rounded as the ends of strata are
     vec2 part = (vec2(stratum.from, stratum.to) - w.x) / max(w.y - w.x, 1e-30);
     part = clamp(part, 0.0, w.y > w.x ? 1.0 : 0.0);
     return vec3(part, (after - before) * (part.y - part.x));
@@ -115,14 +118,23 @@ float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
     float dd = dot(offset, offset);
     float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-36));
     return smoothstep(0.5, 0.8, dot(normal, centre_normal)) * (1.0 - smoothstep(0.15, 0.35, off)) *
-           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd));
+           (1.0 - smoothstep(6.0 * area, max(12.0 * area, 1e-36), dd));
 }
 
-// Has an element's part about as much weight per power as the chosen one's? Elsewhere one's power says nothing of the other's.
-float alike_of(vpl_block block, uint element, vec3 part, float chosen)
+// Elements that are much farther or darker are none of the chosen one's piece: the mean would be of those that weigh more.
+float alike(float doublings)
 {
-    float power = (part.y - part.x) * vpl_power(vpl_flux(block, element));
-    return 1.0 - smoothstep(0.4, 1.1, abs(log(max(part.z, 1e-30) / max(power * chosen, 1e-30))));
+    return 1.0 - smoothstep(0.6, 1.6, abs(doublings));
+}
+
+// log2(weight / power) of an element.
+float weight_of_power(vpl_block block, uint element)
+{
+    if (!vpl_of_sky(block)) {
+        return 0.0;
+    }
+    float power = vpl_power(texelFetch(rsm_flux_tex, vpl_texel(block, element), 0).rgb);
+    return power > 0.0 ? log2(max(vpl_weight(block, element, power, args), 1e-37)) - log2(power) : 0.0;
 }
 
 void main()
@@ -143,11 +155,9 @@ void main()
     inside = clamp(inside, 0.0, 0.999);
     vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
 
-    // Of the chosen element, weight per power.
-    float chosen = max(weight_at, 1e-30) / max(vpl_power(vpl_flux(block, at)), 1e-30);
-
-    vec4 flux = vec4(0.0); // and the area, m^2
-    vec2 counted = vec2(0.0); // weights: of what is in `flux`, of all
+    float chosen = weight_of_power(block, at), least = floor(chosen), beyond = chosen - least;
+    vec4 flux = vec4(0.0), next = vec4(0.0); // and the area, m^2
+    vec3 counted = vec3(0.0); // weights: of both classes, of all
     for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
         if (blocks[i + 1u] > blocks[i]) {
             vpl_block b = vpl_block_at(i);
@@ -155,16 +165,21 @@ void main()
                 vec3 part = part_of(i, e, stratum);
                 float share = part.y - part.x;
                 if (share > 0.0) {
-                    float v = alike_of(b, e, part, chosen);
-                    flux += v * vec4(share * vpl_flux(b, e), vpl_piece_of(b, e, vec2(0.0, share), 0u, 1u).area);
-                    counted += part.z * vec2(v, 1.0);
+                    vec4 own = vec4(share * vpl_flux(b, e), vpl_piece_of(b, e, vec2(0.0, share), 0u, 1u).area);
+                    float from = weight_of_power(b, e) - least;
+                    vec2 tents = max(1.0 - abs(vec2(from, from - 1.0)), 0.0);
+                    flux += tents.x * own;
+                    next += tents.y * own;
+                    counted += part.z * vec3(tents, 1.0);
                 }
             }
         }
     }
     flux = workgroup_total(flux);
-    counted = workgroup_total(vec4(counted, 0.0, 0.0)).xy;
-    flux *= counted.x > 0.0 ? counted.y / counted.x : 0.0;
+    next = workgroup_total(next);
+    counted = workgroup_total(vec4(counted, 0.0)).xyz;
+    flux *= counted.x > 0.0 ? (1.0 - beyond) * counted.z / counted.x : 0.0;
+    flux += counted.y > 0.0 ? beyond * counted.z / counted.y * next : vec4(0.0);
 
     vec4 place = vec4(0.0);  // offset from the centre; weight
     vec4 normal = vec4(0.0); // normal; squared offset
@@ -174,7 +189,7 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
-                float like = pieces > 0u ? alike_of(b, e, part, chosen) : 0.0;
+                float like = pieces > 0u ? alike(weight_of_power(b, e) - chosen) : 0.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
@@ -208,7 +223,7 @@ void main()
             for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
                 vec3 part = part_of(i, e, stratum);
                 uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
-                float like = pieces > 0u ? alike_of(b, e, part, chosen) : 0.0;
+                float like = pieces > 0u ? alike(weight_of_power(b, e) - chosen) : 0.0;
                 for (uint k = 0u; k < pieces; k++) {
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;

@@ -40,10 +40,4 @@ vec3 sky_seen_irradiance(ordinate o, float share, float even)
     return o.irradiance * share + environment.sky * (o.even * (share - even));
 }
 
-// All light of its region, W/m^2 across its direction.
-vec3 sky_whole_irradiance(ordinate o)
-{
-    return max(o.irradiance + environment.sky * o.even, vec3(0.0));
-}
-
 #endif

@@ -28,6 +28,9 @@ static const char discs[] =
     "cells are lit by discs, of which corners of rooms cut off some, and what virtual lights lose "
     "on the way is summed from their middles";
 
+static const char way[] = "what fog takes of virtual lights' light on its way to what reflects it "
+                          "again is summed in 16 steps through its voxels, elsewhere by cells";
+
 static const double solved =
     1e-3; // imbalance of a lattice that is solved, without surfaces or among few
 
@@ -41,11 +44,12 @@ static const struct sample_scene {
     const char *noisy;         // why the standard error is known not to get below 1 %
     float albedo;              // of its media; 0: their own
     const char *cut;           // why the factors of VPLs are known to be farther from 1
+    const char *lost;          // why the imbalance of pop is known to be more
 } scenes[] = {
     // Among surfaces light is followed by rays, which the cells' walls are compared with.
     {"room", 4, false, {[LAMPS] = 0.0035, [VPLS] = 0.005}, 0.0075, .cut = discs},
-    {"fog-hall", 4, false, {[SUNS] = 0.012, [VPLS] = 0.02}, 0.006},
-    {"lantern", 4, false, {[LAMPS] = 0.06, [VPLS] = 0.16}, 0.002},
+    {"fog-hall", 4, false, {[SUNS] = 0.012, [VPLS] = 0.02}, 0.002},
+    {"lantern", 4, false, {[LAMPS] = 0.06, [VPLS] = 0.16}, 0.002, .lost = way},
     {"cornell-smoke",
      8,
      false,
@@ -113,8 +117,10 @@ static bool near_balance(const struct sample_scene *k, const char *name, double 
 {
     const bool own = k->imbalance > 0;
     const double bound = own ? k->imbalance : solved;
-    return within(imbalance, bound, own ? NULL : "of a lattice that is solved: some are to 1e-6",
-                  "%s, imbalance", name);
+    const bool near =
+        within(imbalance, bound, own ? NULL : "of a lattice that is solved: some are to 1e-6",
+               "%s, imbalance", name);
+    return todo_if(k->lost, near, k->lost, "%s: imbalance within %g", name, bound);
 }
 
 // Factors that are NaN, or missing, or there without such lights, fail.
@@ -326,16 +332,16 @@ static void sealed_lamp(void **state)
     } lattices[] = {
         {24, 12, "the lattice's box is five cells wide: its volume, in which fog scatters, is off"},
         {32, 4, "the lattice is not solved to the end in 4 sweeps"},
-        {32, 12, NULL},
+        {32, 12, way},
         {48, 4, "the lattice is not solved to the end in 4 sweeps"},
-        {48, 12, NULL},
+        {48, 12, way},
     };
     bool good = true;
     for (int k = 0; k < 10; k++) {
         const bool clear = k & 1;
         const int cells = lattices[k / 2].cells, sweeps = lattices[k / 2].sweeps;
         const char *todo = clear ? NULL : lattices[k / 2].todo;
-        const double bound = !clear ? 0.02 : sweeps < 12 ? 0.0035 : 7e-5;
+        const double bound = clear ? 7e-5 : 0.02;
         const double off = sealed_imbalance(t->dev, clear, cells, sweeps);
         print_message("sealed lamp, %s, %d cells, %d sweeps: imbalance %.3f %%\n",
                       clear ? "no fog" : "fog", cells, sweeps, 100 * off);

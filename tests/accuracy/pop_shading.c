@@ -122,8 +122,8 @@ static void blocks_of_pixels(void **state)
         double mean;
     } cases[] = {
         {"vpl-cave", 0.035, 0.002},
-        {"cornell-smoke", 0.014, 1.5e-4},
-        {"lantern", 0.006, 0.0015},
+        {"cornell-smoke", 0.014, 1.2e-4},
+        {"lantern", 0.006, 3.5e-4},
     };
     bool good = true;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
@@ -198,12 +198,15 @@ static void small_things(void **state)
         const char *name, *settings;
         int half;         // pixels of the crop around the middle
         double off, mean; // of all light in it
+        const char *few;  // why the mean is known to be more
     } cases[] = {
         // Taken from neighbours: 32 % off, mean -23 %; 46, +30; .86, -.49. Between places 2 pixels apart that are as near to
         // the lamp, its light is linear.
-        {make_lamp, "lamp", "shade.step=1", 12, 0.04, 0.007},
-        {make_lamp, "lamp", "shade.step=2", 12, 0.12, 0.015},
-        {make_fence, "fence", "shade.step=2", SIZE / 2, 0.005, 0.001},
+        {make_lamp, "lamp", "vpl.count=128 shade.step=1", 12, 0.04, 0.007},
+        {make_lamp, "lamp", "vpl.count=192 shade.step=1", 12, 0.045, 0.007,
+         "next to a lamp the mean hangs on where its lights lie: .6 to 3.6 % for 128 to 240"},
+        {make_lamp, "lamp", "vpl.count=128 shade.step=2", 12, 0.12, 0.015},
+        {make_fence, "fence", "vpl.count=128 shade.step=2", SIZE / 2, 0.005, 0.001},
     };
     bool good = true;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
@@ -213,7 +216,9 @@ static void small_things(void **state)
         cases[k].make(&scene, &view);
         tyn_device *dev = ((gpu_test *)*state)->dev;
         picture_render(&p, dev, "pop", &scene, &view, cases[k].settings, 1);
-        picture_render(&truth, dev, "pop", &scene, &view, "shade.pattern=1 shade.step=1", 1);
+        char each[64];
+        snprintf(each, sizeof each, "%.13s shade.pattern=1 shade.step=1", cases[k].settings);
+        picture_render(&truth, dev, "pop", &scene, &view, each, 1);
         double sum = 0, off = 0, all = 0;
         int far = 0;
         for (int y = SIZE / 2 - cases[k].half; y < SIZE / 2 + cases[k].half; y++) {
@@ -233,8 +238,10 @@ static void small_things(void **state)
         good = within(off / sum, cases[k].off, NULL, "%s, %s, off", cases[k].name,
                       cases[k].settings) &&
                good;
-        good = within(fabs(all) / sum, cases[k].mean, NULL, "%s, %s, mean", cases[k].name,
-                      cases[k].settings) &&
+        good = todo_if(cases[k].few,
+                       within(fabs(all) / sum, cases[k].mean, NULL, "%s, %s, mean", cases[k].name,
+                              cases[k].settings),
+                       cases[k].few, "%s, %s, mean", cases[k].name, cases[k].settings) &&
                good;
         picture_free(&p);
         picture_free(&truth);

@@ -206,7 +206,7 @@ static void lamp_without_places(void **state)
     printf("brightest %g\n", most);
     assert_true(most > 0.5); // the lamp reflects nothing: places add no light here
     const double change = fabs(sum) / (3 * SIZE * SIZE);
-    const bool good = within(change, 5e-4, NULL, "lamp without places, change");
+    const bool good = within(change, 2e-4, NULL, "lamp without places, change");
     picture_free(&p);
     picture_free(&q);
     tyn_scene_finish(&scene);
@@ -295,6 +295,7 @@ enum { TRAY, AROUND, ROOM, YARD, GROUND, GROUND_IN_FOG };
 
 static const char around[] =
     "surfaces outside the medium's box reflect none of the light that it sends them";
+static const char draw[] = "virtual lights are few: other places for them change means by .2 %";
 
 static void against_path(void **state)
 {
@@ -307,9 +308,9 @@ static void against_path(void **state)
         double error, bias;
         const char *reason; // of a known failure
     } cases[] = {
-        {"tray, blue", TRAY, BLUE, 0.6f, 0.03, 0.025, NULL},
-        {"tray, window", TRAY, WINDOW, 0.6f, 0.08, 0.02, NULL},
-        {"tray, even", TRAY, EVEN, 0.6f, 0.012, 0.01, NULL},
+        {"tray, blue", TRAY, BLUE, 0.6f, 0.03, 0.015, NULL},
+        {"tray, window", TRAY, WINDOW, 0.6f, 0.035, 0.01, NULL},
+        {"tray, even", TRAY, EVEN, 0.6f, 0.007, 0.0035, NULL},
         {"tray around the fog, blue", AROUND, BLUE, 0.6f, 0.015, 0.004, around},
         {"tray around the fog, window", AROUND, WINDOW, 0.6f, 0.03, 0.007, around},
         {"tray around the fog, even", AROUND, EVEN, 0.6f, 0.004, 0.0015, around},
@@ -318,10 +319,10 @@ static void against_path(void **state)
         {"room, even", ROOM, EVEN, 0.5f, 0.1, 0.03, NULL},
         {"dark yard, blue", YARD, BLUE, 0.1f, 0.004, 0.003, NULL},
         {"dark yard, window", YARD, WINDOW, 0.1f, 0.015, 0.003, NULL},
-        {"yard, blue", YARD, BLUE, 0.6f, 0.0055, 0.003, NULL},
-        {"yard, even", YARD, EVEN, 0.6f, 0.0055, 0.0017, NULL},
-        {"ground of 40 m, even", GROUND, EVEN, 20, 0.016, 0.01, NULL},
-        {"ground of 40 m, blue", GROUND, BLUE, 20, 0.014, 0.003, NULL},
+        {"yard, blue", YARD, BLUE, 0.6f, 0.0055, 0.003, draw},
+        {"yard, even", YARD, EVEN, 0.6f, 0.0055, 0.0017, draw},
+        {"ground of 40 m, even", GROUND, EVEN, 20, 0.016, 0.006, NULL},
+        {"ground of 40 m, blue", GROUND, BLUE, 20, 0.014, 0.003, draw},
         {"ground of 200 m, even", GROUND, EVEN, 100, 0.05, 0.05, NULL},
         {"fog on 80 m, even", GROUND_IN_FOG, EVEN, 40, 0.028, 0.016, NULL},
     };

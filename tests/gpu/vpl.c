@@ -161,6 +161,49 @@ static void power_of_maps(void **state)
     }
 }
 
+// Sixty-four patches, a hundred times as bright here as there, of two colours.
+static void patches(double x, double y, float rgb[4])
+{
+    const int i = (int)(8 * x), j = (int)(8 * y);
+    const double bright = pow(100, (i * 37 + j * 61) % 64 / 63.0) * 1e-4;
+    rgb[0] = (float)bright;
+    rgb[1] = (float)(bright * ((i ^ j) & 1 ? 0.2 : 1));
+    rgb[2] = 0;
+}
+
+// Under a sky VPLs have all power in the mean over choices of places: here over numbers of VPLs, which cut other strata.
+static void power_under_a_sky(void **state)
+{
+    enum { LEAST = 9, MOST = 72 };
+    double mean[2] = {0}, all[2] = {0};
+    for (int32_t count = LEAST; count <= MOST; count++) {
+        start();
+        scene.params.count = count;
+        scene.params.sky_irradiance = 30;
+        add_tile(TYN_RSM_SKY);
+        fill_floor(0, patches);
+        const struct radial_vpls *found = run(*state);
+        for (uint32_t k = 0; k < found->count; k++) {
+            const struct light_block *l = &found->list[k];
+            assert_true(isfinite(l->position[0] + l->position[2] + l->radius + l->color[1]));
+            assert_true(l->color[2] == 0);
+            for (int c = 0; c < 2; c++) {
+                mean[c] += PI * l->color[c] / (MOST - LEAST + 1);
+            }
+        }
+    }
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        all[0] += scene.flux[i / SIDE][i % SIDE][0];
+        all[1] += scene.flux[i / SIDE][i % SIDE][1];
+    }
+    print_message("power under a sky: off by %+.2f, %+.2f %% in the mean\n",
+                  100 * (mean[0] / all[0] - 1), 100 * (mean[1] / all[1] - 1));
+    const double off = maximum(fabs(mean[0] / all[0] - 1), fabs(mean[1] / all[1] - 1));
+    assert_within(off, 0.02, NULL);
+    scene.params.sky_irradiance = 0; // dark, though the map is not: nothing is chosen
+    assert_int_equal(run(*state)->count, 0);
+}
+
 static double slide;
 static void sliding(double x, double y, float rgb[4])
 {
@@ -324,7 +367,8 @@ static void nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(power_of_maps), cmocka_unit_test(steady),  cmocka_unit_test(emitters),
+        cmocka_unit_test(power_of_maps), cmocka_unit_test(power_under_a_sky),
+        cmocka_unit_test(steady),        cmocka_unit_test(emitters),
         cmocka_unit_test(in_fog),        cmocka_unit_test(nothing),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

@@ -223,6 +223,8 @@ static limit known[] = {
     {"shade_alone", 112000, 0, 8, "as shade_surface, without a list", false},
     {"shade_vpls", 113000, 0, 4, "virtual lights with their lobes", false},
     {"shade_places", 90000, 0, 4, "as shade_vpls", false},
+    {"vpl_lights", 72000, 0, 18, "three passes over a stratum, each with all kinds of elements",
+     false},
 };
 enum { NUM_KNOWN = sizeof known / sizeof *known };
 

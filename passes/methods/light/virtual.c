@@ -7,8 +7,6 @@
 
 _Static_assert(2 * TYN_SHADOW_VIEWS <= TYN_VIEWS_SEEN, "a place for each view of both passes");
 
-static const float pi = 3.14159265f;
-
 // 0: nothing emits; 2: some materials on both sides.
 static uint32_t emitters(const tyn_surfaces *surfaces)
 {
@@ -178,6 +176,18 @@ void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_view *vie
     tyn_take(refs, RSM_PORT_RSM_FLUX, *maps);
 }
 
+// Of what shines along ordinates: on a plane under the environment's mean, and of suns without beams across them; W/m^2.
+static float sky_irradiance(const tyn_frame_scene *frame)
+{
+    const float pi = 3.14159265f, *mean = frame->environment.sky;
+    float sum = pi * (mean[0] + mean[1] + mean[2]);
+    for (uint32_t i = tyn_num_beams(&frame->lights); i < frame->lights.num_suns; i++) {
+        const float *sun = frame->lights.suns[i].color;
+        sum += sun[0] + sun[1] + sun[2];
+    }
+    return sum;
+}
+
 void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     if (!job->frame->num_triangles) {
@@ -191,8 +201,7 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     params.emitters = emitters(&job->scene->surfaces);
     memcpy(params.near_lo, job->frame->near_lo, sizeof params.near_lo);
     memcpy(params.near_hi, job->frame->near_hi, sizeof params.near_hi);
-    const float *mean = job->frame->environment.sky;
-    params.sky_irradiance = pi * (mean[0] + mean[1] + mean[2]);
+    params.sky_irradiance = sky_irradiance(job->frame);
     if (params.count == 0) {
         return;
     }
