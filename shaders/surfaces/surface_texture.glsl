@@ -12,8 +12,8 @@ int surface_wrap(int i, int size, uint rule)
         return clamp(i, 0, size - 1);
     }
     int period = rule == 2u ? 2 * size : size;
-    i -= period * int(floor(float(i) / float(period)));
-    i = clamp(i, 0, period - 1);
+    // Not by a quotient of floats, which may be rounded to below a whole number: then the last texel is taken for the first.
+    i = i < 0 ? period - 1 - (-1 - i) % period : i % period;
     return i < size ? i : 2 * size - 1 - i;
 }
 
