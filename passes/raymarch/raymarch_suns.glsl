@@ -164,7 +164,7 @@ struct march_lit {
 // `bit`: of the light in `shadow`.
 march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
-    float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
+    float part = ds / max(ceil(ds / march_shadow_piece() - 1e-3), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
     float sum = 0.0, moment = 0.0;
     uint mask = bit < 32u ? 1u << bit : 0u; // lights beyond are looked at afresh
     bool known = (shadow.known & mask) != 0u, lit = (shadow.lit & mask) != 0u;
