@@ -28,7 +28,12 @@ static uint32_t num_cells(tyn_extent e)
     return e.x * e.y * e.z;
 }
 
-static levels plan_levels(tyn_extent dims, const uint32_t repeat[3])
+static uint32_t coarse_cells(const tyn_lattice_params *p)
+{
+    return p->little_shared ? LATTICE_COARSE_FEW : LATTICE_COARSE_CELLS;
+}
+
+static levels plan_levels(const tyn_lattice_params *p, tyn_extent dims, const uint32_t repeat[3])
 {
     levels l = {.size = {dims}, .num = 1, .cells = num_cells(dims)};
     while (dims.x > 4 || dims.y > 4 || dims.z > 4) {
@@ -36,7 +41,7 @@ static levels plan_levels(tyn_extent dims, const uint32_t repeat[3])
         l.size[l.num++] = dims;
         l.cells += num_cells(dims);
     }
-    while (num_cells(l.size[l.first_small]) > LATTICE_COARSE_CELLS) {
+    while (num_cells(l.size[l.first_small]) > coarse_cells(p)) {
         l.first_small++;
     }
     for (uint32_t a = 0; a < 3; a++) {
@@ -93,7 +98,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     const uint64_t scalar = sizeof(float) * channels, n = num_cells(dims);
     const uint64_t elements = num_elements(dims, walls);
-    const uint64_t all_levels = plan_levels(dims, p->shape.repeat).cells;
+    const uint64_t all_levels = plan_levels(p, dims, p->shape.repeat).cells;
     uint64_t groups = (elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     tyn_build_image(b, LATTICE_PORT_MOMENTS, texels, 1);
     tyn_build_buffer(b, LATTICE_PORT_STATE, 4 * scalar * elements);
@@ -166,7 +171,7 @@ static void on_level_as(solve *s, uint32_t kernel, uint32_t level, tyn_extent th
                    s->params->shape.repeat[2]},
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    const uint32_t specs[2] = {spec, s->levels.repeat};
+    const uint32_t specs[3] = {spec, s->levels.repeat, coarse_cells(s->params)};
     const tyn_dispatch d = {.kernel = kernel, .cells = threads, .args = &args, .spec = specs};
     if (s->launch == LISTED) {
         list_launch(s, kernel, threads);
@@ -286,7 +291,7 @@ static void record(tyn_recorder *r, const void *params)
     solve s = {
         .r = r,
         .params = p,
-        .levels = plan_levels(dims, p->shape.repeat),
+        .levels = plan_levels(p, dims, p->shape.repeat),
         .texels = {dims.x, dims.y, dims.z * p->shape.channels},
         .args = {.dims = {dims.x, dims.y, dims.z},
                  .channels = p->shape.channels,

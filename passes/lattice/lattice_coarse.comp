@@ -19,12 +19,14 @@ layout(binding = 2) uniform samplerBuffer rhs_words;
 TYN_UPDATE(3, correction, float correction_out[]);
 
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 2) const uint coarse_cells = LATTICE_COARSE_CELLS; // of the first level that is solved here, at most
 
 // Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one
 // that is thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all
 // levels.
-shared float correction[LATTICE_COARSE_CELLS * 11 / 8];
-shared float rhs[LATTICE_COARSE_CELLS * 3 / 8];
+const uint COARSER = (coarse_cells >> 2) + (coarse_cells >> 3);
+shared float correction[coarse_cells + COARSER];
+shared float rhs[COARSER];
 
 
 // On the coarsest level, at most 4^3 cells, over-relaxed.

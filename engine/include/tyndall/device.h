@@ -108,6 +108,7 @@ TYN_API const char *tyn_device_driver(const tyn_device *dev);
 typedef struct tyn_capacity {
     bool software;    // a processor
     uint32_t threads; // that a card holds at once, a power of two; 0 of a processor
+    uint32_t shared_bytes; // of a workgroup's memory; 0: not known, 16384 at least
 } tyn_capacity;
 
 // Lists devices of this machine: fills up to `max` entries, returns how many there are (or < 0).
