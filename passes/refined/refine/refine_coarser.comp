@@ -8,7 +8,7 @@ void main()
     const bool inside = all(lessThan(texel, refine_size(args.level)));
     for (uint i = 0u; i < uint(REFINE_MOMENTS); i++) {
         tile[i][gl_LocalInvocationIndex] =
-            inside ? imageLoad(moments_image, ivec2(refine_moment(i) + refine_corner(args.level) + texel)) : vec4(0.0);
+            inside ? imageLoad(moments_image, ivec2(refine_moment(i) + refine_corner(args.level) + texel)).rgb : vec3(0.0);
     }
     refine_store_coarser(args.level);
 }

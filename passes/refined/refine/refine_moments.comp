@@ -31,7 +31,7 @@ void main()
         }
     }
     for (uint i = 0u; i < uint(REFINE_MOMENTS); i++) {
-        tile[i][gl_LocalInvocationIndex] = vec4(moments[i], 0.0);
+        tile[i][gl_LocalInvocationIndex] = moments[i];
         if (inside) {
             imageStore(moments_image, ivec2(refine_moment(i) + cell), vec4(moments[i], 0.0));
         }
