@@ -54,7 +54,7 @@ static void record(tyn_recorder *r, const void *data)
     TYN_DISPATCH(r, .kernel = KERNEL_FIELD, .cells = grid, .args = &args);
     TYN_DISPATCH(r, .kernel = KERNEL_SEND, .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
                  .args = &args);
-    TYN_DISPATCH(r, .kernel = KERNEL_MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_MAP, .cells = {TYN_IMPORTANCE_GROUP, 1, 1}, .args = &args);
     double hops = (double)n * n * n * p->iterations;
     double steps = (double)TYN_IMPORTANCE_TEXELS * TYN_IMPORTANCE_RAYS * TYN_IMPORTANCE_RAYS *
                    TYN_IMPORTANCE_STEPS;

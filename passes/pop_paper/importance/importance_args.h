@@ -4,6 +4,7 @@
 #define TYN_IMPORTANCE_WIDTH 32 // of the map of directions, texels
 #define TYN_IMPORTANCE_HEIGHT 16
 #define TYN_IMPORTANCE_TEXELS (TYN_IMPORTANCE_WIDTH * TYN_IMPORTANCE_HEIGHT)
+#define TYN_IMPORTANCE_GROUP 256 // threads of the kernel that makes the map
 #define TYN_IMPORTANCE_RAYS 6   // along each side of the box, per direction of the map
 #define TYN_IMPORTANCE_STEPS 12 // of a ray through the box
 

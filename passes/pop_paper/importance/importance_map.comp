@@ -1,7 +1,7 @@
 // importance_map.comp -- the map: filtered over the sphere, of mean 1, filtered in time. One workgroup.
 #include "importance.glsl"
 
-layout(local_size_x = TYN_IMPORTANCE_TEXELS) in;
+layout(local_size_x = TYN_IMPORTANCE_GROUP) in; // one workgroup, two texels a thread
 TYN_READ(0, sent, float sent[]);
 TYN_UPDATE(1, history, importance_history history);
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D importance_image;
@@ -36,18 +36,21 @@ float around(uint texel)
 
 void main()
 {
-    uint texel = gl_LocalInvocationID.x;
-    directions[texel] = importance_direction(texel);
+    uint me = gl_LocalInvocationID.x;
+    for (uint texel = me; texel < TYN_IMPORTANCE_TEXELS; texel += TYN_IMPORTANCE_GROUP) {
+        directions[texel] = importance_direction(texel);
+    }
     barrier();
-    float value = around(texel);
-    filtered[texel] = value;
+    for (uint texel = me; texel < TYN_IMPORTANCE_TEXELS; texel += TYN_IMPORTANCE_GROUP) {
+        filtered[texel] = around(texel);
+    }
     barrier();
-    if (texel < TYN_IMPORTANCE_HEIGHT) {
+    if (me < TYN_IMPORTANCE_HEIGHT) {
         float sum = 0.0;
         for (int i = 0; i < TYN_IMPORTANCE_WIDTH; i++) {
-            sum += filtered[texel * TYN_IMPORTANCE_WIDTH + i];
+            sum += filtered[me * TYN_IMPORTANCE_WIDTH + i];
         }
-        row_means[texel] = sum * importance_share(texel);
+        row_means[me] = sum * importance_share(me);
     }
     barrier();
     float mean = 0.0;
@@ -56,16 +59,18 @@ void main()
     }
     // Nothing scatters: all directions are alike. (A NaN is not above 0 either.)
     bool known = mean > 1e-30 && mean < 1e30;
-    float importance = known ? mix(value / mean, 1.0, args.floor) : 1.0;
     uint frames = history.frames;
-    if (frames > 0u) {
-        importance = mix(importance, history.map[texel], args.smoothing);
+    for (uint texel = me; texel < TYN_IMPORTANCE_TEXELS; texel += TYN_IMPORTANCE_GROUP) {
+        float importance = known ? mix(filtered[texel] / mean, 1.0, args.floor) : 1.0;
+        if (frames > 0u) {
+            importance = mix(importance, history.map[texel], args.smoothing);
+        }
+        imageStore(importance_image, ivec2(texel % TYN_IMPORTANCE_WIDTH, texel / TYN_IMPORTANCE_WIDTH),
+                   vec4(importance, 0.0, 0.0, 0.0));
+        history.map[texel] = importance;
     }
-    imageStore(importance_image, ivec2(texel % TYN_IMPORTANCE_WIDTH, texel / TYN_IMPORTANCE_WIDTH),
-               vec4(importance, 0.0, 0.0, 0.0));
-    history.map[texel] = importance;
     barrier(); // all have read the count
-    if (texel == 0u) {
+    if (me == 0u) {
         history.frames = min(frames + 1u, 0xffffu);
     }
 }
