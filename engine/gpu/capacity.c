@@ -89,14 +89,14 @@ tyn_capacity tyn_device_capacity(const tyn_procs *vk, VkPhysicalDevice device)
     VkPhysicalDeviceProperties2 known = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     vk->GetPhysicalDeviceProperties2(device, &known);
     const VkPhysicalDeviceType type = known.properties.deviceType;
-    const uint32_t shared = known.properties.limits.maxComputeSharedMemorySize;
+    const bool little = known.properties.limits.maxComputeSharedMemorySize < 32768;
     if (type == VK_PHYSICAL_DEVICE_TYPE_CPU) {
-        return (tyn_capacity){.software = true, .shared_bytes = shared};
+        return (tyn_capacity){.software = true, .little_shared = little};
     }
     const extension_list list = list_extensions(vk, device);
     const double told = threads_told(vk, device, &list);
     free(list.items);
     const double by_type = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? DISCRETE : OTHER;
     const double threads = fmin(fmax(told > 0 ? told : by_type, LEAST), MOST);
-    return (tyn_capacity){.threads = (uint32_t)exp2(round(log2(threads))), .shared_bytes = shared};
+    return (tyn_capacity){.little_shared = little, .threads = (uint32_t)exp2(round(log2(threads)))};
 }

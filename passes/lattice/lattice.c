@@ -171,7 +171,7 @@ static void on_level_as(solve *s, uint32_t kernel, uint32_t level, tyn_extent th
                    s->params->shape.repeat[2]},
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    const uint32_t specs[3] = {spec, s->levels.repeat, coarse_cells(s->params)};
+    const uint32_t specs[3] = {spec, s->levels.repeat, s->params->little_shared};
     const tyn_dispatch d = {.kernel = kernel, .cells = threads, .args = &args, .spec = specs};
     if (s->launch == LISTED) {
         list_launch(s, kernel, threads);

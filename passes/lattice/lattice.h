@@ -21,7 +21,7 @@ typedef struct tyn_lattice_params {
     int32_t sweeps;          // 1..256
     int32_t cycles;          // V-cycles of the diffusion correction after each sweep, 0..8
     uint32_t anderson;       // 1: mix the last three sweeps
-    uint32_t little_shared;  // 1: a workgroup has less than LATTICE_COARSE_BYTES of shared memory
+    uint32_t little_shared;  // 1: as tyn_capacity has it
 } tyn_lattice_params;
 
 // clang-format off

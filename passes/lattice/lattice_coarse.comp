@@ -19,11 +19,12 @@ layout(binding = 2) uniform samplerBuffer rhs_words;
 TYN_UPDATE(3, correction, float correction_out[]);
 
 layout(constant_id = 0) const uint walls = 0;
-layout(constant_id = 2) const uint coarse_cells = LATTICE_COARSE_CELLS; // of the first level that is solved here, at most
+layout(constant_id = 2) const uint little_shared = 0;
 
 // Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one
 // that is thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all
 // levels.
+const uint coarse_cells = little_shared == 1u ? LATTICE_COARSE_FEW : LATTICE_COARSE_CELLS; // at most
 const uint COARSER = (coarse_cells >> 2) + (coarse_cells >> 3);
 shared float correction[coarse_cells + COARSER];
 shared float rhs[COARSER];

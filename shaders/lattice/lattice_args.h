@@ -85,8 +85,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_MIX_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_NUM_DOTS 7                       // ... and of the last sweep
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
-#define LATTICE_COARSE_FEW 2048   // ... with the least shared memory that Vulkan promises, 16 KiB
-#define LATTICE_COARSE_BYTES 30720 // of shared memory, with 4096
+#define LATTICE_COARSE_FEW 2048   // ... with 16 KiB of shared memory: exactly as much
 #define LATTICE_COARSE_GROUP 256
 #define LATTICE_SUN_GROUP 256
 #define LATTICE_DEPTH_GROUP 256

@@ -25,6 +25,7 @@ typedef struct id_info {
     uint32_t image;     // of a sampled image's type
     bool real;          // float, 32 bits
     bool exact;         // decorated NoContraction
+    uint32_t built_in;  // 1 + its number, of a variable
 } id_info;
 
 typedef struct module {
@@ -35,10 +36,15 @@ typedef struct module {
     uint32_t bound;
     uint32_t functions;                // GLSL.std.450
     uint32_t reals[5], doubles[5];     // types by number of components
-    uint32_t ints[5], unsigned_type;   // likewise; of 32 bits
+    uint32_t ints[5], unsigneds[5];    // likewise; of 32 bits
+    uint32_t local_size[3];            // threads of a workgroup; 0: not known
+    uint32_t workgroups;               // the variable NumWorkgroups
+    uint32_t size, ones, last;         // constants of three: threads, 1, threads - 1
+    uint32_t last_index;               // of a thread in its workgroup
     uint32_t zero, shift, mix;         // constants: 0 as int, 30 and a factor as unsigned
     uint32_t texels, texel, step, low; // as float
-    bool uses_images, uses_doubles, uses_bits;
+    bool order;                        // threads are reversed
+    uint32_t old_bound;
     words globals; // types and constants that are added
     words out;
 } module;
@@ -99,13 +105,14 @@ static void read_type(module *m, const uint32_t *w, uint32_t op)
         *(w[2] == 32 ? &m->reals[1] : w[2] == 64 ? &m->doubles[1] : &m->reals[0]) = w[1];
     } else if (op == SpvOpTypeInt && w[2] == 32) {
         *id = (id_info){.component = w[1], .num = 1};
-        *(w[3] ? &m->ints[1] : &m->unsigned_type) = w[1];
+        *(w[3] ? &m->ints[1] : &m->unsigneds[1]) = w[1];
     } else if (op == SpvOpTypeVector) {
         *id = (id_info){.component = w[2], .num = w[3], .real = m->ids[w[2]].real};
-        uint32_t *known = w[2] == m->reals[1]     ? m->reals
-                          : w[2] == m->doubles[1] ? m->doubles
-                          : w[2] == m->ints[1]    ? m->ints
-                                                  : NULL;
+        uint32_t *known = w[2] == m->reals[1]       ? m->reals
+                          : w[2] == m->doubles[1]   ? m->doubles
+                          : w[2] == m->ints[1]      ? m->ints
+                          : w[2] == m->unsigneds[1] ? m->unsigneds
+                                                    : NULL;
         if (known && w[2]) {
             known[w[3]] = w[1];
         }
@@ -120,6 +127,7 @@ static void read_type(module *m, const uint32_t *w, uint32_t op)
 
 static void read_all(module *m)
 {
+    bool ids_of_size = false;
     for (size_t at = HEADER; at < m->count; at += length_at(m, at)) {
         const uint32_t *w = m->in + at, op = op_at(m, at);
         bool has_result, has_type;
@@ -130,10 +138,20 @@ static void read_all(module *m)
             m->functions = w[1];
         } else if (op == SpvOpDecorate && w[2] == SpvDecorationNoContraction) {
             m->ids[w[1]].exact = true;
+        } else if (op == SpvOpDecorate && w[2] == SpvDecorationBuiltIn) {
+            m->ids[w[1]].built_in = 1 + w[3];
+            m->workgroups = w[3] == SpvBuiltInNumWorkgroups ? w[1] : m->workgroups;
+        } else if ((op == SpvOpExecutionMode && w[2] == SpvExecutionModeLocalSize) ||
+                   (op == SpvOpExecutionModeId && w[2] == SpvExecutionModeLocalSizeId)) {
+            ids_of_size = op == SpvOpExecutionModeId;
+            memcpy(m->local_size, w + 3, sizeof m->local_size);
         } else if (has_result && has_type) {
             m->ids[w[2]].type = w[1];
             m->ids[w[2]].at = (uint32_t)at;
         }
+    }
+    for (int a = 0; a < 3 && ids_of_size; a++) {
+        m->local_size[a] = m->in[m->ids[m->local_size[a]].at + 3]; // a constant's value
     }
 }
 
@@ -155,26 +173,54 @@ static uint32_t constant(module *m, uint32_t type, uint32_t value)
     return id;
 }
 
+static uint32_t constant_of_three(module *m, const uint32_t v[3], uint32_t less)
+{
+    uint32_t parts[3];
+    for (int a = 0; a < 3; a++) {
+        parts[a] = constant(m, m->unsigneds[1], v[a] - less);
+    }
+    const uint32_t id = new_id(m);
+    EMIT(&m->globals, SpvOpConstantComposite, m->unsigneds[3], id, parts[0], parts[1], parts[2]);
+    return id;
+}
+
+static void add_order(module *m)
+{
+    vector_type(m, m->unsigneds, 3);
+    m->size = constant_of_three(m, m->local_size, 0);
+    m->last = constant_of_three(m, m->local_size, 1);
+    m->last_index =
+        constant(m, m->unsigneds[1], m->local_size[0] * m->local_size[1] * m->local_size[2] - 1);
+    m->ones = constant_of_three(m, (const uint32_t[]){1, 1, 1}, 0);
+    if (m->workgroups >= m->old_bound) { // it was not there
+        const uint32_t pointer = new_id(m);
+        EMIT(&m->globals, SpvOpTypePointer, pointer, SpvStorageClassInput, m->unsigneds[3]);
+        EMIT(&m->globals, SpvOpVariable, pointer, m->workgroups, SpvStorageClassInput);
+    }
+}
+
 static void add_globals(module *m)
 {
     if (!m->ints[1]) {
         m->ints[1] = new_id(m);
         EMIT(&m->globals, SpvOpTypeInt, m->ints[1], 32, 1);
     }
-    if (!m->unsigned_type) {
-        m->unsigned_type = new_id(m);
-        EMIT(&m->globals, SpvOpTypeInt, m->unsigned_type, 32, 0);
+    if (!m->unsigneds[1]) {
+        m->unsigneds[1] = new_id(m);
+        EMIT(&m->globals, SpvOpTypeInt, m->unsigneds[1], 32, 0);
     }
     if (!m->doubles[1] && m->kinds->fused) {
         m->doubles[1] = new_id(m);
         EMIT(&m->globals, SpvOpTypeFloat, m->doubles[1], 64);
-        m->uses_doubles = true;
     }
     const float texels = (float)(1 << ROUNDING_TEXEL_BITS);
     const float step = (float)ROUNDING_ULPS * 2 / 3 / 8388608; // -1.5 to 1.5 steps are all ulps
+    if (m->order) {
+        add_order(m);
+    }
     m->zero = constant(m, m->ints[1], 0);
-    m->shift = constant(m, m->unsigned_type, 30);
-    m->mix = constant(m, m->unsigned_type, 0x9e3779b1u);
+    m->shift = constant(m, m->unsigneds[1], 30);
+    m->mix = constant(m, m->unsigneds[1], 0x9e3779b1u);
     m->texels = constant(m, m->reals[1], bits_of(texels));
     m->texel = constant(m, m->reals[1], bits_of(1 / texels));
     m->step = constant(m, m->reals[1], bits_of(step));
@@ -228,8 +274,8 @@ static void round_read(module *m, size_t at, uint32_t operands_at)
     memcpy(w, m->in + at, length_at(m, at) * sizeof *w);
     const uint32_t image_type = m->ids[m->ids[w[3]].type].image, num = m->ids[image_type].num;
     if (num) {
-        const uint32_t image = new_id(m), size = new_id(m), sizes = new_id(m), in_texels = new_id(m),
-                       rounded = new_id(m), coordinates = new_id(m);
+        const uint32_t image = new_id(m), size = new_id(m), sizes = new_id(m),
+                       in_texels = new_id(m), rounded = new_id(m), coordinates = new_id(m);
         const uint32_t level = level_of(m, at, operands_at), type = m->reals[num];
         EMIT(&m->out, SpvOpImage, image_type, image, w[3]);
         EMIT(&m->out, SpvOpImageQuerySizeLod, m->ints[num], size, image, level);
@@ -240,7 +286,6 @@ static void round_read(module *m, size_t at, uint32_t operands_at)
         const uint32_t back = scale(m, num, rounded, m->texel);
         EMIT(&m->out, SpvOpFDiv, type, coordinates, back, sizes);
         w[4] = coordinates;
-        m->uses_images = true;
     }
     put(&m->out, w, length_at(m, at));
     free(w);
@@ -265,9 +310,9 @@ static void put_off(module *m, size_t at)
         if (num > 1) {
             EMIT(&m->out, SpvOpCompositeExtract, m->reals[1], part, whole, i);
         }
-        EMIT(&m->out, SpvOpBitcast, m->unsigned_type, bits, part);
-        EMIT(&m->out, SpvOpIMul, m->unsigned_type, mixed, bits, m->mix);
-        EMIT(&m->out, SpvOpShiftRightLogical, m->unsigned_type, top, mixed, m->shift);
+        EMIT(&m->out, SpvOpBitcast, m->unsigneds[1], bits, part);
+        EMIT(&m->out, SpvOpIMul, m->unsigneds[1], mixed, bits, m->mix);
+        EMIT(&m->out, SpvOpShiftRightLogical, m->unsigneds[1], top, mixed, m->shift);
         EMIT(&m->out, SpvOpConvertUToF, m->reals[1], steps, top);
         EMIT(&m->out, SpvOpFMul, m->reals[1], off, steps, m->step);
         EMIT(&m->out, SpvOpFAdd, m->reals[1], factor, off, m->low);
@@ -279,6 +324,51 @@ static void put_off(module *m, size_t at)
         put(&m->out, (const uint32_t[]){type, w[2]}, 2);
         put(&m->out, parts, num);
     }
+}
+
+// The built-in variable that a pointer leads to, or to a component of; 0: none whose threads are counted.
+static uint32_t variable_of(const module *m, uint32_t pointer)
+{
+    const uint32_t at = m->ids[pointer].at;
+    const bool part = at && op_at(m, at) == SpvOpAccessChain && length_at(m, at) == 5;
+    const uint32_t variable = part ? m->in[at + 3] : pointer;
+    switch (m->ids[variable].built_in) {
+    case 1 + SpvBuiltInWorkgroupId:
+    case 1 + SpvBuiltInLocalInvocationId:
+    case 1 + SpvBuiltInGlobalInvocationId:
+    case 1 + SpvBuiltInLocalInvocationIndex:
+        return variable;
+    default:
+        return 0;
+    }
+}
+
+// The last thread is the first, and the last workgroup: what depends on their order shows.
+static void reverse(module *m, size_t at)
+{
+    const uint32_t *w = m->in + at, type = w[1], result = w[2];
+    const uint32_t variable = variable_of(m, w[3]), built_in = m->ids[variable].built_in - 1;
+    const uint32_t forward = new_id(m), whole = m->unsigneds[3];
+    EMIT(&m->out, SpvOpLoad, type, forward, w[3]);
+    if (built_in == SpvBuiltInLocalInvocationIndex) {
+        EMIT(&m->out, SpvOpISub, type, result, m->last_index, forward);
+        return;
+    }
+    uint32_t last = m->last;
+    if (built_in != SpvBuiltInLocalInvocationId) {
+        const uint32_t groups = new_id(m), all = new_id(m);
+        last = new_id(m);
+        EMIT(&m->out, SpvOpLoad, whole, groups, m->workgroups);
+        EMIT(&m->out, SpvOpIMul, whole, all, groups,
+             built_in == SpvBuiltInGlobalInvocationId ? m->size : m->ones);
+        EMIT(&m->out, SpvOpISub, whole, last, all, m->ones);
+    }
+    if (variable != w[3]) { // a component
+        const uint32_t part = new_id(m), index = m->in[m->ids[w[3]].at + 4];
+        EMIT(&m->out, SpvOpCompositeExtract, type, part, last, m->in[m->ids[index].at + 3]);
+        last = part;
+    }
+    EMIT(&m->out, SpvOpISub, type, result, last, forward);
 }
 
 static uint32_t widen(module *m, uint32_t num, uint32_t value)
@@ -321,10 +411,23 @@ static bool is_function_put_off(const module *m, size_t at)
         return false;
     }
     switch (w[4]) {
+    case GLSLstd450Sin:
+    case GLSLstd450Cos:
+    case GLSLstd450Tan:
+    case GLSLstd450Asin:
+    case GLSLstd450Acos:
+    case GLSLstd450Atan:
+    case GLSLstd450Atan2:
+    case GLSLstd450Pow:
     case GLSLstd450Exp:
+    case GLSLstd450Log:
     case GLSLstd450Exp2:
+    case GLSLstd450Log2:
     case GLSLstd450Sqrt:
     case GLSLstd450InverseSqrt:
+    case GLSLstd450Length:
+    case GLSLstd450Distance:
+    case GLSLstd450Normalize:
         return true;
     default:
         return false;
@@ -340,6 +443,8 @@ static void rewrite(module *m, size_t at)
         round_read(m, at, 5);
     } else if (m->kinds->weights && op == SpvOpImageGather) {
         round_read(m, at, 6);
+    } else if (m->order && op == SpvOpLoad && variable_of(m, w[3])) {
+        reverse(m, at);
     } else if (m->kinds->functions && is_function_put_off(m, at)) {
         put_off(m, at);
     } else if (m->kinds->fused && sum && !m->ids[w[2]].exact &&
@@ -350,9 +455,16 @@ static void rewrite(module *m, size_t at)
     }
 }
 
+// Decorations and what comes after them.
+static bool is_past_names(uint32_t op)
+{
+    return op == SpvOpDecorate || op == SpvOpMemberDecorate ||
+           (op >= SpvOpTypeVoid && op <= SpvOpTypeFunction);
+}
+
 static void write_all(module *m)
 {
-    bool in_code = false, at_end_of_imports = m->functions != 0;
+    bool in_code = false, at_end_of_imports = m->functions != 0, annotated = false;
     put(&m->out, m->in, HEADER);
     EMIT(&m->out, SpvOpCapability, SpvCapabilityImageQuery);
     if (m->kinds->fused) {
@@ -361,6 +473,9 @@ static void write_all(module *m)
     if (!m->functions) {
         m->functions = new_id(m);
     }
+    m->order = m->kinds->order && m->local_size[0];
+    const bool lacks_groups = m->order && !m->workgroups;
+    m->workgroups = lacks_groups ? new_id(m) : m->workgroups;
     for (size_t at = HEADER; at < m->count; at += length_at(m, at)) {
         const uint32_t op = op_at(m, at);
         if (op == SpvOpMemoryModel && !at_end_of_imports) {
@@ -374,8 +489,17 @@ static void write_all(module *m)
             add_globals(m);
             put(&m->out, m->globals.items, m->globals.count);
         }
+        if (lacks_groups && !annotated && is_past_names(op)) {
+            EMIT(&m->out, SpvOpDecorate, m->workgroups, SpvDecorationBuiltIn,
+                 SpvBuiltInNumWorkgroups);
+            annotated = true;
+        }
         if (in_code) {
             rewrite(m, at);
+        } else if (op == SpvOpEntryPoint && lacks_groups) {
+            put(&m->out, &(uint32_t){(length_at(m, at) + 1) << 16 | op}, 1);
+            put(&m->out, m->in + at + 1, length_at(m, at) - 1);
+            put(&m->out, &m->workgroups, 1);
         } else {
             put(&m->out, m->in + at, length_at(m, at));
         }
@@ -386,10 +510,10 @@ uint32_t *rounding_rewrite(const rounding_kinds *kinds, const uint32_t *in, size
                            size_t *size)
 {
     module m = {.kinds = kinds, .in = in, .count = count};
-    if (!kinds->weights && !kinds->fused && !kinds->functions) {
+    if (!kinds->weights && !kinds->fused && !kinds->functions && !kinds->order) {
         return NULL;
     }
-    m.bound = in[BOUND];
+    m.bound = m.old_bound = in[BOUND];
     m.ids = calloc(m.bound, sizeof *m.ids);
     if (!m.ids) {
         return NULL;

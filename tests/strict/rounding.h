@@ -12,7 +12,9 @@
 #define ROUNDING_ULPS 2
 
 typedef struct rounding_kinds {
-    bool weights;   // filtered reads: coordinates rounded to 1 / 2^ROUNDING_TEXEL_BITS of a texel
+    bool weights; // filtered reads: coordinates rounded to 1 / 2^ROUNDING_TEXEL_BITS of a texel
+    bool
+        order; // threads and workgroups are reversed: what is added up by whoever comes first is in another order
     bool fused;     // a * b + c is rounded once
     bool functions; // quotients, roots, exponentials: off by up to ROUNDING_ULPS, either way
     bool denormals; // numbers below 2^-126 are 0: the driver's threads do it

@@ -106,9 +106,9 @@ TYN_API const char *tyn_device_driver(const tyn_device *dev);
 
 // How much a device does at once. Dispatches are sized by it (<tyndall/extend/dispatch_sizes.h>).
 typedef struct tyn_capacity {
-    bool software;    // a processor
-    uint32_t threads; // that a card holds at once, a power of two; 0 of a processor
-    uint32_t shared_bytes; // of a workgroup's memory; 0: not known, 16384 at least
+    bool software;      // a processor
+    bool little_shared; // a workgroup has less than 32 KiB of shared memory; Vulkan promises 16
+    uint32_t threads;   // that a card holds at once, a power of two; 0 of a processor
 } tyn_capacity;
 
 // Lists devices of this machine: fills up to `max` entries, returns how many there are (or < 0).

@@ -2,7 +2,6 @@
 #include <tyndall/extend/field.h>
 #include "passes/passes.h"
 #include <tyndall/registry.h>
-#include "shaders/lattice/lattice_args.h"
 #include <string.h>
 
 void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field)
@@ -10,7 +9,7 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
     tyn_lattice_params params;
     tyn_settings_params(job->settings, &tyn_pass_lattice, &params);
     params.shape = s->lattice.shape;
-    params.little_shared = job->capacity.shared_bytes < LATTICE_COARSE_BYTES;
+    params.little_shared = job->capacity.little_shared;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_PORT_CELLS] = s->lattice.cells,
         [LATTICE_PORT_SOURCE] = s->lattice.source,
