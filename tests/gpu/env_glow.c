@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "passes/env_glow/env_glow.h"
 #include "numbers.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -195,7 +196,8 @@ static void convolution(void **state)
     print_message("convolution: within %.2g\n", worst);
 }
 
-// A uniform map stays as it is, at every depth; so does one that is a single texel.
+// A uniform map stays as it is, at every depth; so does one that is a single texel. Each of its HEIGHT degrees comes from a
+// recurrence of quotients, which Vulkan allows to be off by 2.5 ulps.
 static void uniform(void **state)
 {
     gpu_test *t = *state;
@@ -209,7 +211,7 @@ static void uniform(void **state)
             smear(t, size ? 1 : WIDTH, size ? 1 : HEIGHT, map, 0.2f, 0.9f, 0.99f, &levels);
         for (uint32_t i = 0; i < levels * WIDTH * HEIGHT * 4; i++) {
             double expected = i % 4 == 3 ? 1 : map[i % 4];
-            if (!(fabs(glow[i] - expected) <= 1e-5 * expected)) {
+            if (!(fabs(glow[i] - expected) <= HEIGHT * 2.5 * FLT_EPSILON * expected)) {
                 fail_msg("texel %u: %.8g instead of %g", i / 4, glow[i], expected);
             }
         }
