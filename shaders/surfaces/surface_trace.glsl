@@ -85,7 +85,8 @@ bool surface_meets(surface_ray ray, vec3 v0, vec3 v1, vec3 v2, vec3 normal, vec3
     // Not from an origin in the triangle's plane, and not if the ray leads away from it.
     float height = dot(normal, from), facing = dot(normal, ray.direction);
     bool before = abs(height) > dot(rounding, abs(from)) &&
-                  (height * facing >= 0.0 || abs(facing) <= dot(rounding, abs(ray.direction)));
+                  ((height < 0.0 ? -facing : facing) >= 0.0 || // no product: it is of five lengths, and may be a denormal
+                   abs(facing) <= dot(rounding, abs(ray.direction)));
     return inside && edges.z != 0.0 && t < far && before;
 }
 
