@@ -18,7 +18,8 @@ float ordinates_drop(float y)
 
 float ordinates_polar(float y)
 {
-    return 2.0 * asin(sqrt(clamp(0.5 * ordinates_drop(y), 0.0, 1.0)));
+    // The root of 1 may be 1 + 2 ulps on a card, whose arc sine is no number.
+    return 2.0 * asin(min(sqrt(max(0.5 * ordinates_drop(y), 0.0)), 1.0));
 }
 
 float ordinates_azimuth(float x)
