@@ -321,7 +321,7 @@ static void grow(const twin *base, const twin *w, region base_r, region r, int n
         divide(base_r, k == 0, at[k], &lower[0], &upper[0]);
         widths[k] = width(lower[0]) + width(upper[0]);
     }
-    const bool across = widths[1] >= 0.999 * widths[0];
+    const bool across = widths[1] >= 0.9995 * widths[0];
     divide(base_r, across, at[!across], &lower[0], &upper[0]);
     divide(r, across, base == w ? at[!across] : cut(w, r, across, part), &lower[1], &upper[1]);
     grow(base, w, lower[0], lower[1], n / 2, out);
