@@ -3,7 +3,7 @@
 // usage: kernels DEVICE METHOD SCENE...           a line of CSV for each variant (tools/kernels has the columns); SCENE: of samples/scenes
 //        kernels --check DEVICE METHOD SCENE...   exits with 1 where one passes a limit below, and with 77 without DEVICE
 //
-// Scenes are rendered on the software device. Each of its pipelines is then compiled on DEVICE (part of its name), with the constants
+// Scenes are rendered on the software device, without one on DEVICE. Each of its pipelines is then compiled on DEVICE (part of its name), with the constants
 // that a card has. Mesa's drivers for AMD do that without a card: RADV_FORCE_FAMILY=navi21 and DEVICE RADV (tools/kernels).
 #include "gpu/compiler.h"
 #include "gpu/device.h"
@@ -343,7 +343,8 @@ static bool render(tyn_device *dev, const char *method, const char *name, const 
     tyn_scene scene;
     tyn_view view;
     tyn_offline *off = NULL;
-    snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, name);
+    const char *folder = getenv("TYN_SAMPLE_SCENES"); // of a tree that was carried elsewhere
+    snprintf(path, sizeof path, "%s/%s.gltf", folder ? folder : TYN_SAMPLE_SCENES, name);
     tyn_scene_init(&scene);
     memset(&view, 0, sizeof view);
     bool fine = tyn_scene_load(&scene, path, NULL, log) == TYN_OK &&
@@ -371,6 +372,13 @@ static bool open_loader(void)
     return function != NULL;
 }
 
+// A machine with a card may lack the software device.
+static bool open_renderer(const char *card, const tyn_log *log, tyn_device **out)
+{
+    return tyn_device_open(tyn_device_open_params(.select = "llvmpipe"), out) == TYN_OK ||
+           tyn_device_open(tyn_device_open_params(.select = card, .log = *log), out) == TYN_OK;
+}
+
 int main(int argc, char **argv)
 {
     const bool check = argc > 1 && strcmp(argv[1], "--check") == 0;
@@ -381,9 +389,7 @@ int main(int argc, char **argv)
     }
     const tyn_log log = {.fn = say};
     tyn_device *from = NULL, *to = NULL;
-    bool fine =
-        open_loader() &&
-        tyn_device_open(tyn_device_open_params(.select = "llvmpipe", .log = log), &from) == TYN_OK;
+    bool fine = open_loader() && open_renderer(argv[first], &log, &from);
     for (int i = first + 2; fine && i < argc; i++) {
         fine = render(from, argv[first + 1], argv[i], &log);
     }

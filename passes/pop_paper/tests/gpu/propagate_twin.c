@@ -176,7 +176,9 @@ static bool read_header(FILE *file, state_record *records, int first[], int laye
 
 int states_load(state_record **out)
 {
-    const char *path = TYN_TEST_DATA "/propagate_rect_states.bin";
+    const char *folder = getenv("TYN_TEST_DATA"); // of a tree that was carried elsewhere
+    char path[512];
+    snprintf(path, sizeof path, "%s/propagate_rect_states.bin", folder ? folder : TYN_TEST_DATA);
     int first[STATE_MAX], layers[STATE_MAX], num = 0;
     state_record *records = calloc(STATE_MAX, sizeof *records);
     FILE *file = fopen(path, "rb");
