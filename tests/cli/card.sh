@@ -1,0 +1,91 @@
+#!/bin/sh
+# card.sh -- tools/card packs one scene, is interrupted, goes on, and its figures become tables. About 40 s of processors.
+. "$(dirname "$0")/lib.sh"
+needs_device
+build=$(dirname "$(dirname "$tool")")
+card=$work/tyndall-card/tools/card
+export HOME="$work"
+
+# wrong WORDS PROGRAM ARGUMENTS: exit code 2, and one line with these words.
+wrong() {
+    words=$1
+    shift
+    "$@" >out 2>err
+    code=$?
+    [ "$code" = 2 ] || fail "$*: exit $code, expected 2: $(cat out err)"
+    [ "$(cat out err | wc -l)" = 1 ] || fail "$*: not one line: $(cat out err)"
+    grep -qF -- "$words" err || fail "$*: no '$words' in: $(cat err)"
+}
+
+# holds PYTHON: of the figures c, in card/card.json.
+holds() {
+    python3 -c "import json; c = json.load(open('card/card.json')); assert $1" || fail "not so: $1: $(head -c 3000 card/card.json)"
+}
+
+wrong "no built tree" "$source/tools/card" pack nowhere out.tar
+wrong "a .tar.xz or .tar" "$source/tools/card" pack "$build" out.zip
+wrong "no such scene" "$source/tools/card" pack --scenes nothing "$build" out.tar
+wrong "no such test" "$source/tools/card" pack --tests nothing "$build" out.tar
+wrong "not what \`card pack\` packs" "$source/tools/card" run
+wrong "from 10 to 36000" "$source/tools/card" run --seconds 1
+
+"$source/tools/card" pack --scenes cube --tests hg "$build" packed.tar >log 2>&1 || { fail "pack: $(cat log)"; finish; }
+tar -xf packed.tar && rm packed.tar
+VK_DRIVER_FILES=/nowhere wrong "no usable Vulkan device" "$card" run
+# A stored picture of another scene: the difference must show.
+cp tyndall-card/pictures/cube.exr tyndall-card/pictures/cube-dense.exr
+
+# Interrupted as soon as there is this picture.
+"$card" run --seconds 600 >log 2>&1 &
+child=$!
+tries=0
+while ! grep -qF '"cube": {' card/card.json 2>/dev/null && [ $tries -lt 1200 ]; do
+    tries=$((tries + 1))
+    sleep 0.1
+done
+wrong "another run writes there" "$card" run
+kill -INT $child
+wait $child
+code=$?
+[ $code = 130 ] || fail "run: exit $code after SIGINT: $(cat log)"
+holds "c['schema'] == 'tyndall-card' and c['version'] == 1 and 'references: cube' in c['left_out'] and 'tests' not in c"
+
+# What is done is not done again: a figure that no run gives stays.
+python3 - <<'PY'
+import json
+card = json.load(open("card/card.json"))
+card["pictures"]["cube"]["rel_l1"] = 0.12345
+json.dump(card, open("card/card.json", "w"))
+PY
+runs=0
+while [ $runs -lt 6 ] && ! grep -q '"hg": {' card/card.json; do
+    runs=$((runs + 1))
+    "$card" run --seconds 20 >log 2>&1 || fail "run: exit $?: $(cat log)"
+done
+holds "c['pictures']['cube']['rel_l1'] == 0.12345"
+holds "len(c['pictures']) == 3 and c['pictures']['cube dense']['rel_l1'] > .01"
+holds "c['pictures']['cube g .9']['rel_l1'] < 1e-3"
+holds "c['frames']['cube 512x512 cold']['ms'] > 0 and len(c['frames']['cube 512x512 cold']['nodes']) > 5"
+holds "c['path']['cube 512x512']['million_samples_a_second'] > 0 and c['tests']['hg']['result'] == 'passed'"
+holds "len(c['runs']) == 1 + $runs and all(r['seconds'] < 25 for r in c['runs'][1:])"
+holds "not {f'{p}: {k}' for p in ('pictures', 'frames', 'path', 'tests') for k in c.get(p, {})} & set(c['left_out'])"
+
+printf 'before\n<!-- card -->\nold\n<!-- end of card -->\nafter\n' >page.md
+"$source/tools/docs/card" card/card.json page.md || fail "page: exit $?"
+for line in before after 'Version' '12 % in the median' '| pixels | `cube` |' '1 passed'; do
+    grep -qF -- "$line" page.md || fail "page: no '$line' in: $(cat page.md)"
+done
+grep -q '^old$' page.md && fail "page: old lines are still there"
+cp page.md again.md
+"$source/tools/docs/card" card/card.json again.md
+cmp -s page.md again.md || fail "page: another one the second time"
+wrong "has no lines" "$source/tools/docs/card" card/card.json log
+wrong "No such file" "$source/tools/docs/card" nothing.json
+sed 's/"runs"/"others"/' card/card.json >lacks.json
+wrong "lacks figures" "$source/tools/docs/card" lacks.json
+sed 's/"commit": "/"commit": "other/' card/card.json >other.json && mv other.json card/card.json
+wrong "give another --out" "$card" run
+echo '{' >card/card.json
+wrong "cannot be read as JSON" "$card" run
+wrong "cannot be read as JSON" "$source/tools/docs/card" card/card.json
+finish
