@@ -390,15 +390,16 @@ int main(int argc, char **argv)
     const tyn_log log = {.fn = say};
     tyn_device *from = NULL, *to = NULL;
     bool fine = open_loader() && open_renderer(argv[first], &log, &from);
-    for (int i = first + 2; fine && i < argc; i++) {
-        fine = render(from, argv[first + 1], argv[i], &log);
-    }
     keeps_statistics = true;
     const bool there =
         fine && tyn_device_open(tyn_device_open_params(.select = argv[first], .log = log,
                                                        .get_instance_proc_addr = get_function),
                                 &to) == TYN_OK;
-    for (uint32_t i = 0; there && i < from->num_pipelines; i++) {
+    for (int i = first + 2; there && fine && i < argc; i++) {
+        fine = render(from, argv[first + 1], argv[i], &log);
+    }
+    const bool rendered = there && fine;
+    for (uint32_t i = 0; rendered && i < from->num_pipelines; i++) {
         for (const tyn_variant *v = from->pipelines[i]->variants; v; v = v->next) {
             fine = measure(to, from->pipelines[i], v->spec, check) && fine;
         }
