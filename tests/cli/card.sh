@@ -1,5 +1,5 @@
 #!/bin/sh
-# card.sh -- tools/card packs one scene, is interrupted, goes on, and its figures become tables. About 40 s of processors.
+# card.sh -- tools/card_pack packs one scene, tools/card is interrupted and goes on, tools/docs/card makes tables. About 40 s of processors.
 . "$(dirname "$0")/lib.sh"
 needs_device
 build=$(dirname "$(dirname "$tool")")
@@ -22,33 +22,36 @@ holds() {
     python3 -c "import json; c = json.load(open('card/card.json')); assert $1" || fail "not so: $1: $(head -c 3000 card/card.json)"
 }
 
-wrong "no built tree" "$source/tools/card" pack nowhere out.tar
-wrong "a .tar.xz or .tar" "$source/tools/card" pack "$build" out.zip
-wrong "no such scene" "$source/tools/card" pack --scenes nothing "$build" out.tar
-wrong "no such test" "$source/tools/card" pack --tests nothing "$build" out.tar
-wrong "not what \`card pack\` packs" "$source/tools/card" run
-wrong "from 20 to 36000" "$source/tools/card" run --seconds 1
+pack=$source/tools/card_pack
+wrong "no built tree" "$pack" nowhere out.tar
+wrong "a .tar.xz or .tar" "$pack" "$build" out.zip
+wrong "no such scene" "$pack" --scenes nothing "$build" out.tar
+wrong "no such test" "$pack" --tests nothing "$build" out.tar
+wrong "no Vulkan driver" env VK_DRIVER_FILES=/nowhere "$pack" --scenes cube --tests hg "$build" out.tar
+[ -z "$(ls -d out.tar card-* 2>/dev/null)" ] || fail "card_pack leaves something behind: $(ls)"
+wrong "no bundle.json" "$source/tools/card"
+wrong "from 20 to 36000" "$source/tools/card" --seconds 1
 
-"$source/tools/card" pack --scenes cube --tests hg "$build" packed.tar >log 2>&1 || { fail "pack: $(cat log)"; finish; }
+"$pack" --scenes cube --tests hg "$build" packed.tar >log 2>&1 || { fail "pack: $(cat log)"; finish; }
 tar -xf packed.tar && rm packed.tar
-VK_DRIVER_FILES=/nowhere wrong "no usable Vulkan device" "$card" run
+wrong "no usable Vulkan device" env VK_DRIVER_FILES=/nowhere "$card"
 # A stored picture of another scene: the difference must show.
 cp tyndall-card/pictures/cube.exr tyndall-card/pictures/cube-dense.exr
 
 # run_until SECONDS WORDS: a run, interrupted as soon as these words are in its figures.
 run_until() {
-    "$card" run --seconds "$1" >log 2>&1 &
+    "$card" --seconds "$1" >log 2>&1 &
     child=$!
     tries=0
     while ! grep -qF "$2" card/card.json 2>/dev/null && [ $tries -lt 1800 ]; do
         tries=$((tries + 1))
         sleep 0.1
     done
-    wrong "another run writes there" "$card" run
+    wrong "another run writes there" "$card"
     kill -INT $child
     wait $child
     code=$?
-    [ $code = 130 ] || fail "run --seconds $1: exit $code after SIGINT: $(cat log)"
+    [ $code = 130 ] || fail "card --seconds $1: exit $code after SIGINT: $(cat log)"
 }
 
 run_until 600 '"cube": {'
@@ -62,7 +65,7 @@ card["pictures"]["cube"]["rel_l1"] = 0.12345
 json.dump(card, open("card/card.json", "w"))
 PY
 run_until 80 '"hg": {'
-"$card" run --seconds 20 >log 2>&1 || fail "run --seconds 20: exit $?: $(cat log)"
+"$card" --seconds 20 >log 2>&1 || fail "card --seconds 20: exit $?: $(cat log)"
 holds "c['pictures']['cube']['rel_l1'] == 0.12345"
 holds "len(c['pictures']) == 3 and c['pictures']['cube dense']['rel_l1'] > .01"
 holds "c['pictures']['cube g .9']['rel_l1'] < 1e-3"
@@ -85,8 +88,10 @@ wrong "No such file" "$source/tools/docs/card" nothing.json
 sed 's/"runs"/"others"/' card/card.json >lacks.json
 wrong "lacks figures" "$source/tools/docs/card" lacks.json
 sed 's/"commit": "/"commit": "other/' card/card.json >other.json && mv other.json card/card.json
-wrong "give another --out" "$card" run
+wrong "give another --out" "$card"
+echo '{"schema": "tyndall-card", "version": 1, "runs": 3}' >card/card.json
+wrong "in the place of figures" "$card"
 echo '{' >card/card.json
-wrong "cannot be read as JSON" "$card" run
+wrong "cannot be read as JSON" "$card"
 wrong "cannot be read as JSON" "$source/tools/docs/card" card/card.json
 finish

@@ -3,8 +3,8 @@
 // usage: kernels DEVICE METHOD SCENE...           a line of CSV for each variant (tools/kernels has the columns); SCENE: of samples/scenes
 //        kernels --check DEVICE METHOD SCENE...   exits with 1 where one passes a limit below, and with 77 without DEVICE
 //
-// Scenes are rendered on the software device, without one on DEVICE. Each of its pipelines is then compiled on DEVICE (part of its name), with the constants
-// that a card has. Mesa's drivers for AMD do that without a card: RADV_FORCE_FAMILY=navi21 and DEVICE RADV (tools/kernels).
+// Scenes are rendered on the software device, or on DEVICE where there is none. Each pipeline of theirs is then compiled on DEVICE
+// (part of its name), with the constants that a card has. Mesa's drivers for AMD do that without a card: RADV_FORCE_FAMILY=navi21 and DEVICE RADV (tools/kernels).
 #include "gpu/compiler.h"
 #include "gpu/device.h"
 #include "gpu/specialize.h"
@@ -372,7 +372,7 @@ static bool open_loader(void)
     return function != NULL;
 }
 
-// A machine with a card may lack the software device.
+// The device that renders. A machine with a card may lack the software device.
 static bool open_renderer(const char *card, const tyn_log *log, tyn_device **out)
 {
     return tyn_device_open(tyn_device_open_params(.select = "llvmpipe"), out) == TYN_OK ||
