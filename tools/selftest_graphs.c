@@ -1,4 +1,4 @@
-// selftest_graphs.c -- compiled graphs: between a write and a read of it stands a barrier.
+// selftest_graphs.c -- compiled graphs: between a node that writes and one that reads stands a barrier.
 #include "selftest.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ typedef struct resource {
     char name[NAME];
     bool made;     // a node before this one has it as an output
     bool many;     // several nodes have an output of this name: barriers on it may be of any
-    bool readable; // the last barrier on it makes it visible to reads
+    bool readable; // a barrier since its node's first launch makes it visible to reads
 } resource;
 
 typedef struct graph_check {
@@ -20,6 +20,7 @@ typedef struct graph_check {
     uint32_t outputs[MAX_RESOURCES], num_outputs; // of the node so far
     uint32_t inputs[MAX_RESOURCES], num_inputs;
     uint32_t num_nodes, num_barriers, num_reads, num_missing;
+    bool began; // the node has launched
 } graph_check;
 
 static uint32_t resource_of(graph_check *g, const char *name, size_t length)
@@ -78,18 +79,30 @@ static void end_node(graph_check *g)
     g->num_inputs = g->num_outputs = 0;
 }
 
-// "column: COMPUTE STORAGE_WRITE -> COMPUTE SAMPLED_READ"
+// "memory: COMPUTE STORAGE_WRITE -> COMPUTE STORAGE_READ|SAMPLED_READ", or of an image that changes its layout.
 static void barrier(graph_check *g, const char *text)
 {
     const char *to = strstr(text, " -> ");
+    const bool readable = to && strstr(to, "READ");
     g->num_barriers++;
-    g->resources[resource_of(g, text, strcspn(text, ":"))].readable = to && strstr(to, "READ");
+    if (strncmp(text, "memory: ", 8) != 0) {
+        g->resources[resource_of(g, text, strcspn(text, ":"))].readable = readable;
+        return;
+    }
+    const char *write = strstr(text, "WRITE");
+    if (!write || write > to) { // what came before is waited for, not made visible
+        return;
+    }
+    for (uint32_t i = 0; readable && i < g->num_resources; i++) {
+        g->resources[i].readable = true;
+    }
 }
 
 static void take_line(graph_check *g, const char *line)
 {
     if (strncmp(line, "node ", 5) == 0) {
         end_node(g);
+        g->began = false;
         g->num_nodes++;
         return;
     }
@@ -101,12 +114,17 @@ static void take_line(graph_check *g, const char *line)
         line += strcspn(line, " ");
         const uint32_t before = g->num_outputs;
         add_port(g, line + strspn(line, " "), g->outputs, &g->num_outputs);
-        if (made_anew && g->num_outputs > before) {
+        if (g->num_outputs > before) {
             resource *r = &g->resources[g->outputs[before]];
-            r->many = r->many || r->made;
+            r->many = r->many || (made_anew && r->made);
         }
     } else if (strncmp(line, "barrier ", 8) == 0) {
         barrier(g, line + 8);
+    } else if (strncmp(line, "dispatch ", 9) == 0 || strncmp(line, "draw ", 5) == 0) {
+        for (uint32_t i = 0; i < g->num_outputs && !g->began; i++) {
+            g->resources[g->outputs[i]].readable = false;
+        }
+        g->began = true;
     }
 }
 

@@ -14,11 +14,25 @@ tyn_access tyn_access_join(tyn_access a, tyn_access b)
     };
 }
 
+static bool covers(VkFlags64 all, VkFlags64 some)
+{
+    return !(some & ~all);
+}
+
+// Visibility is a set of pairs; keeping the product would claim pairs that no barrier made. Each barrier makes its own pair visible,
+// so widen only when one side is equal.
+static void make_visible(tyn_track *t, VkPipelineStageFlags2 stages, VkAccessFlags2 access)
+{
+    const bool widen =
+        t->visible_stages == 0 || t->visible_stages == stages || t->visible_access == access;
+    t->visible_stages = widen ? t->visible_stages | stages : stages;
+    t->visible_access = widen ? t->visible_access | access : access;
+}
+
 bool tyn_plan(tyn_track *t, tyn_access a, tyn_barrier *out)
 {
-    bool transition = a.layout != t->layout;
-    bool invisible = a.read && t->write_stages &&
-                     ((a.stages & ~t->visible_stages) || (a.access & ~t->visible_access));
+    const bool transition = a.layout != t->layout;
+    const bool visible = covers(t->visible_stages, a.stages) && covers(t->visible_access, a.access);
     bool needed;
     *out = (tyn_barrier){.dst_stages = a.stages,
                          .dst_access = a.access,
@@ -31,14 +45,16 @@ bool tyn_plan(tyn_track *t, tyn_access a, tyn_barrier *out)
         out->src_stages = t->write_stages | t->read_stages;
         out->src_access = t->write_access;
     } else if (a.write) {
-        bool after_reads = t->read_stages != 0;
-        bool full = t->write_stages && (a.read ? invisible : !after_reads);
-        needed = after_reads || t->write_stages;
-        out->src_stages = t->read_stages | (full ? t->write_stages : 0);
+        // Reads since the last write have waited for it: who waits for them need not.
+        const bool after_reads = t->read_stages && !a.read;
+        const bool full = t->write_stages && !visible && !after_reads;
+        const bool reads = t->read_stages && !covers(t->after_reads, a.stages);
+        needed = full || reads;
+        out->src_stages = (reads ? t->read_stages : 0) | (full ? t->write_stages : 0);
         out->src_access = full ? t->write_access : 0;
         out->dst_access = full ? a.access : 0;
     } else {
-        needed = invisible;
+        needed = a.read && t->write_stages && !visible;
         out->src_stages = t->write_stages;
         out->src_access = t->write_access;
     }
@@ -65,16 +81,43 @@ bool tyn_plan(tyn_track *t, tyn_access a, tyn_barrier *out)
                          .layout = a.layout};
     } else {
         t->read_stages |= a.stages;
+        t->after_reads = 0;
         if (needed) {
-            // Visibility is a set of pairs; keeping the product would claim pairs that no barrier
-            // made. Each barrier makes its own pair visible, so widen only when one side is equal.
-            bool widen = t->visible_stages == 0 || t->visible_stages == a.stages ||
-                         t->visible_access == a.access;
-            t->visible_stages = widen ? t->visible_stages | a.stages : a.stages;
-            t->visible_access = widen ? t->visible_access | a.access : a.access;
+            make_visible(t, a.stages, a.access);
         }
     }
     return needed;
+}
+
+void tyn_barrier_join(tyn_barrier *all, const tyn_barrier *b)
+{
+    all->src_stages |= b->src_stages;
+    all->dst_stages |= b->dst_stages;
+    all->src_access |= b->src_access;
+    all->dst_access |= b->dst_access;
+}
+
+void tyn_barrier_widen(tyn_barrier *all)
+{
+    if (all->src_access && (all->dst_stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)) {
+        all->dst_access |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+                           VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                           VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
+    }
+    if (all->src_access && (all->src_stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)) {
+        all->src_access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    }
+}
+
+void tyn_track_barrier(tyn_track *t, const tyn_barrier *all)
+{
+    if (t->read_stages && covers(all->src_stages, t->read_stages)) {
+        t->after_reads |= all->dst_stages;
+    }
+    if (t->write_stages && covers(all->src_stages, t->write_stages) &&
+        covers(all->src_access, t->write_access) && all->dst_access) {
+        make_visible(t, all->dst_stages, all->dst_access);
+    }
 }
 
 // ---- names ------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 //   write after read        an execution dependency only
 //   write after write, and read-modify-write after a write    a full memory dependency
 //   another layout          a transition, which is a write
+// unless a barrier for all memory that others needed has already made it (tyn_track_barrier).
 // Tracks live across frames, so the first accesses of a frame depend on the last ones of the frame
 // before it.
 #pragma once
@@ -21,6 +22,7 @@ typedef struct tyn_track {
     VkPipelineStageFlags2 visible_stages;
     VkAccessFlags2 visible_access;
     VkPipelineStageFlags2 read_stages; // reads since the last write
+    VkPipelineStageFlags2 after_reads; // stages that these reads are ordered before
     VkImageLayout layout;              // images
 } tyn_track;
 
@@ -43,6 +45,16 @@ tyn_access tyn_access_join(tyn_access a, tyn_access b);
 
 // Advances the track over the access. True if `out` must come first.
 bool tyn_plan(tyn_track *track, tyn_access access, tyn_barrier *out);
+
+// Joins `b`, which transitions nothing, to a barrier for all memory; {0}: to none yet.
+void tyn_barrier_join(tyn_barrier *all, const tyn_barrier *b);
+
+// Lets a barrier for all memory make visible to compute shaders what it makes visible to one kind of their accesses: it costs as
+// much, and those that come next need none.
+void tyn_barrier_widen(tyn_barrier *all);
+
+// Notes a barrier for all memory in a track: what it orders and makes visible needs no barrier of its own.
+void tyn_track_barrier(tyn_track *track, const tyn_barrier *all);
 
 // "COMPUTE|TRANSFER", "SHADER_SAMPLED_READ", "GENERAL": for dumps and tests. Writes at most size bytes.
 void tyn_print_stages(char *text, size_t size, VkPipelineStageFlags2 stages);

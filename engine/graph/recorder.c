@@ -110,41 +110,15 @@ void graph_memory_barrier(const tyn_graph *g, VkCommandBuffer cmd, const tyn_bar
                                                         .dstAccessMask = b->dst_access}});
 }
 
-typedef struct barrier_batch {
-    VkBufferMemoryBarrier2 buffers[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
-    VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
-    uint32_t num_buffers, num_images;
-} barrier_batch;
-
-static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, const tyn_barrier *b)
-{
-    const phys *p = &g->phys[index];
-    if (g->resources[index].dim == TYN_BUFFER) {
-        batch->buffers[batch->num_buffers++] = (VkBufferMemoryBarrier2){
-            .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-            .srcStageMask = b->src_stages,
-            .srcAccessMask = b->src_access,
-            .dstStageMask = b->dst_stages,
-            .dstAccessMask = b->dst_access,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .buffer = p->buffer,
-            .size = VK_WHOLE_SIZE,
-        };
-        return;
-    }
-    batch->images[batch->num_images++] = graph_image_barrier(&g->resources[index], p->image, b);
-}
-
-static void print_barrier(tyn_recorder *r, uint32_t index, const tyn_barrier *b)
+static void print_barrier(tyn_recorder *r, const char *name, const tyn_barrier *b)
 {
     char src[128], dst[128], src_access[128], dst_access[128], line[640];
     tyn_print_stages(src, sizeof src, b->src_stages);
     tyn_print_stages(dst, sizeof dst, b->dst_stages);
     tyn_print_access(src_access, sizeof src_access, b->src_access);
     tyn_print_access(dst_access, sizeof dst_access, b->dst_access);
-    int n = snprintf(line, sizeof line, "    barrier %s: %s %s -> %s %s",
-                     r->g->resources[index].name, src, src_access, dst, dst_access);
+    int n = snprintf(line, sizeof line, "    barrier %s: %s %s -> %s %s", name, src, src_access,
+                     dst, dst_access);
     if (b->old_layout != b->new_layout) {
         snprintf(line + n, sizeof line - (size_t)n, ", %s -> %s", tyn_layout_name(b->old_layout),
                  tyn_layout_name(b->new_layout));
@@ -157,31 +131,70 @@ static tyn_track *track_of(tyn_recorder *r, uint32_t index)
     return r->mode == RECORD_PLAN ? &r->tracks[index] : &r->g->phys[index].track;
 }
 
-// Puts the barriers that the touched resources need into the stream.
+// One barrier for all memory in place of one for each touched resource, without transitions. It costs the same, and other
+// resources need none later. False: none is needed.
+static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count, tyn_barrier *all)
+{
+    bool any = false;
+    *all = (tyn_barrier){0};
+    for (uint32_t i = 0; i < count; i++) {
+        tyn_track track = *track_of(r, touches[i].resource);
+        tyn_barrier own;
+        if (tyn_plan(&track, touches[i].access, &own) && own.old_layout == own.new_layout) {
+            tyn_barrier_join(all, &own);
+            any = true;
+        }
+    }
+    tyn_barrier_widen(all);
+    for (uint32_t i = 0; any && i < r->g->num_resources; i++) {
+        tyn_track_barrier(track_of(r, i), all);
+    }
+    return any;
+}
+
+// Puts what the touched resources need into the stream, as one command.
 static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
 {
-    barrier_batch batch = {.num_buffers = 0};
+    VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
+    uint32_t num_images = 0;
+    tyn_barrier all;
+    const bool any = join_barriers(r, touches, count, &all);
+    if (any && r->mode == RECORD_PLAN) {
+        print_barrier(r, "memory", &all);
+    }
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t index = touches[i].resource;
-        tyn_barrier barrier;
-        if (!tyn_plan(track_of(r, index), touches[i].access, &barrier)) {
+        const uint32_t index = touches[i].resource;
+        const resource *res = &r->g->resources[index];
+        tyn_barrier own;
+        tyn_plan(track_of(r, index), touches[i].access, &own);
+        if (own.old_layout == own.new_layout) {
             continue;
         }
-        r->barriers++;
         if (r->mode == RECORD_PLAN) {
-            print_barrier(r, index, &barrier);
+            print_barrier(r, res->name, &own);
+            num_images++;
         } else {
-            add_barrier(r->g, &batch, index, &barrier);
+            images[num_images++] = graph_image_barrier(res, r->g->phys[index].image, &own);
         }
     }
-    if (batch.num_buffers + batch.num_images) {
-        r->g->dev->vk.CmdPipelineBarrier2(
-            r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                        .bufferMemoryBarrierCount = batch.num_buffers,
-                                        .pBufferMemoryBarriers = batch.buffers,
-                                        .imageMemoryBarrierCount = batch.num_images,
-                                        .pImageMemoryBarriers = batch.images});
+    if (!any && !num_images) {
+        return;
     }
+    r->barriers++;
+    if (r->mode == RECORD_PLAN) {
+        return;
+    }
+    const VkMemoryBarrier2 memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                     .srcStageMask = all.src_stages,
+                                     .srcAccessMask = all.src_access,
+                                     .dstStageMask = all.dst_stages,
+                                     .dstAccessMask = all.dst_access};
+    r->g->dev->vk.CmdPipelineBarrier2(
+        r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .memoryBarrierCount = any,
+                                    .pMemoryBarriers = &memory,
+                                    .imageMemoryBarrierCount = num_images,
+                                    .pImageMemoryBarriers = images});
 }
 
 // One barrier for all memory: those of single images and buffers say nothing of others in the same place.

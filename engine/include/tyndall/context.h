@@ -229,7 +229,7 @@ typedef struct tyn_node_report {
     const char *name;
     const char *state; // "ran", "unchanged", "culled", "empty"
     double gpu_ms, cpu_ms;
-    uint32_t dispatches, barriers;
+    uint32_t dispatches, barriers; // barriers: commands, however many resources wait
     // Device memory of what the node makes and works in; of it, what lies where that of other nodes does, so that sums over nodes
     // count it more than once.
     uint64_t bytes, shared_bytes;
