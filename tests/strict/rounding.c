@@ -77,10 +77,10 @@ static void put(words *w, const uint32_t *from, size_t num)
 
 #define EMIT(w, op, ...)                                                                           \
     do {                                                                                           \
-        const uint32_t operands[] = {__VA_ARGS__};                                                 \
-        const uint32_t num = sizeof operands / sizeof *operands;                                   \
-        put(w, &(uint32_t){(num + 1) << 16 | (op)}, 1);                                            \
-        put(w, operands, num);                                                                     \
+        const uint32_t operands_[] = {__VA_ARGS__};                                                \
+        const uint32_t num_ = sizeof operands_ / sizeof *operands_;                                \
+        put(w, &(uint32_t){(num_ + 1) << 16 | (op)}, 1);                                           \
+        put(w, operands_, num_);                                                                   \
     } while (0)
 
 static uint32_t new_id(module *m)

@@ -29,6 +29,35 @@ static struct {
     bool wide; // limits are those of the driver below
 } below = {.once = PTHREAD_ONCE_INIT};
 
+// A word that is none would leave tests as they are on the driver below.
+static void check_words(const char *list)
+{
+    static const char *const words[] = {
+        "wide",
+        "weights",
+        "order",
+        "fused",
+        "functions",
+#if defined __SSE__
+        "denormals"
+#endif
+    };
+    while (*list) {
+        const size_t length = strcspn(list, ",");
+        bool known = false;
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+            known = known || (strlen(words[i]) == length && !strncmp(words[i], list, length));
+        }
+        if (!known) {
+            fprintf(stderr,
+                    "strict driver: STRICT_DRIVER has '%.*s', which is no word for this machine\n",
+                    (int)length, list);
+            exit(2);
+        }
+        list += length + (list[length] == ',');
+    }
+}
+
 static void open_below(void)
 {
     const char *file = getenv("STRICT_DRIVER_BELOW");
@@ -40,6 +69,7 @@ static void open_below(void)
             dlsym(below.library, "vk_icdNegotiateLoaderICDInterfaceVersion");
     }
     const char *list = getenv("STRICT_DRIVER");
+    check_words(list ? list : "");
     below.wide = list && strstr(list, "wide");
     below.kinds = (rounding_kinds){
         .weights = list && strstr(list, "weights"),
