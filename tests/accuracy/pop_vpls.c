@@ -40,7 +40,7 @@ static void any_number(void **state)
         const char *set;
         double off;
     } settings[] = {
-        {"vpl.count=0", 0.6}, {"vpl.count=1", 0.3},    {"vpl.count=2", 0.3},
+        {"vpl.count=0", 0.6}, {"vpl.count=1", 0.3},     {"vpl.count=2", 0.3},
         {"vpl.count=7", 0.1}, {"vpl.count=256", 0.015}, {"vpl.visibility=0", 0.25},
     };
     enum { NUM = sizeof settings / sizeof settings[0] };

@@ -5,8 +5,8 @@
 #define TYN_IMPORTANCE_HEIGHT 16
 #define TYN_IMPORTANCE_TEXELS (TYN_IMPORTANCE_WIDTH * TYN_IMPORTANCE_HEIGHT)
 #define TYN_IMPORTANCE_GROUP 256 // threads of the kernel that makes the map
-#define TYN_IMPORTANCE_RAYS 6   // along each side of the box, per direction of the map
-#define TYN_IMPORTANCE_STEPS 12 // of a ray through the box
+#define TYN_IMPORTANCE_RAYS 6    // along each side of the box, per direction of the map
+#define TYN_IMPORTANCE_STEPS 12  // of a ray through the box
 
 // The grid is the part of the camera's pyramid that holds the medium: column (i, j) is a pencil of the
 // camera's rays, layer k a range of depths. Positions in it are (s, t, z): depth z along `forward`;
