@@ -155,7 +155,9 @@ void main()
     inside = clamp(inside, 0.0, 0.999);
     vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
 
-    float chosen = weight_of_power(block, at), least = floor(chosen), beyond = chosen - least;
+    // What rounding of sums has chosen, not its weight, would have too much power.
+    bool by_weight = weight_at > 1e-6 * (stratum.to - stratum.from);
+    float chosen = by_weight ? weight_of_power(block, at) : 0.0, least = floor(chosen), beyond = chosen - least;
     vec4 flux = vec4(0.0), next = vec4(0.0); // and the area, m^2
     vec3 counted = vec3(0.0); // weights: of both classes, of all
     for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
