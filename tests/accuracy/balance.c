@@ -28,8 +28,8 @@ static const char discs[] =
     "cells are lit by discs, of which corners of rooms cut off some, and what virtual lights lose "
     "on the way is summed from their middles";
 
-static const char way[] = "what fog takes of virtual lights' light on its way to what reflects it "
-                          "again is summed in 16 steps through its voxels, elsewhere by cells";
+static const char way[] =
+    "in fog, since virtual lights carry further reflections; the cause is not shown";
 
 static const double solved =
     1e-3; // imbalance of a lattice that is solved, without surfaces or among few

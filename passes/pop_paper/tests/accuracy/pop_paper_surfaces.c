@@ -39,9 +39,10 @@ static void shadowed(void **state)
         const char *name;
         double error, bias;
         const char *brighter; // why the bias is known to be more
-    } scenes[] = {{"fog-hall", 0.6, 0.08,
-                   "grids carry what is reflected again past surfaces as they do the rest"},
-                  {"vpl-cave", 0.6, 0.6}};
+    } scenes[] = {
+        {"fog-hall", 0.6, 0.08,
+         "since virtual lights carry further reflections, too; less was reflected before"},
+        {"vpl-cave", 0.6, 0.6}};
     gpu_test *t = *state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         tyn_scene scene;
