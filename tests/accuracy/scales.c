@@ -9,6 +9,7 @@
 #include "numbers.h"
 #include "picture.h"
 #include "solids.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -122,7 +123,9 @@ static void brightness(void **state)
         picture_free(&p);
     }
     picture_free(&plain);
-    assert_true(within(worst, 4e-8, NULL, "pop, brightness"));
+    // 2 to 7e-8 on software devices that differ in the width of their vectors; a wrong unit is 6.5 % off.
+    assert_true(
+        within(worst, 4 * FLT_EPSILON, "of rounding: room for four last bits", "pop, brightness"));
 }
 
 // The same random numbers: paths differ where rounding sends one of 8192 another way. None goes another way here; the
