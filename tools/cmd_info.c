@@ -21,6 +21,31 @@ typedef struct info_args {
 
 // ---- the machine ------------------------------------------------------------------------------
 
+// What the device has first, then what it lacks.
+static void print_needs(const tyn_device_info *info)
+{
+    uint32_t count;
+    const tyn_need *needs = tyn_needs(&count);
+    for (int has = 1; has >= 0; has--) {
+        for (uint32_t i = 0; i < count; i++) {
+            const tyn_need *n = &needs[i];
+            if ((int)(info->met >> i & 1) != has) {
+                continue;
+            }
+            char least[16] = "";
+            if (n->least) {
+                snprintf(least, sizeof least, " >= %u", n->least);
+            }
+            printf("   %s %s %s%s: %s%s%s\n", has ? "has  " : "lacks", n->kind, n->name, least,
+                   n->use,
+                   has           ? ""
+                   : n->fallback ? "; instead: "
+                                 : "; required",
+                   has || !n->fallback ? "" : n->fallback);
+        }
+    }
+}
+
 static int print_devices(app *a)
 {
     devices d;
@@ -29,6 +54,7 @@ static int print_devices(app *a)
         char *text = devices_describe(&d.infos[i]);
         printf("%d  %s\n   %s\n", i, d.infos[i].name, text ? text : "");
         free(text);
+        print_needs(&d.infos[i]);
     }
     devices_finish(&d);
     return code;

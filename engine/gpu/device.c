@@ -1,89 +1,12 @@
-// device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
+// device.c -- tyn_device on a host's VkDevice: function tables, samplers.
 #include "gpu/compiler.h"
 #include "base/fault.h"
 #include "base/given.h"
+#include "gpu/needs.h"
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-// ---- requirements -----------------------------------------------------------------------------
-
-static const VkPhysicalDeviceVulkan13Features required13 = {
-    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
-    .synchronization2 = VK_TRUE,
-    .dynamicRendering = VK_TRUE, // raster kernels
-    .maintenance4 = VK_TRUE,     // LocalSizeId and relaxed interfaces that current glslang may emit
-};
-static const VkPhysicalDeviceVulkan12Features required12 = {
-    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-    .pNext = (void *)&required13,
-    .scalarBlockLayout = VK_TRUE, // one struct definition for C and GLSL
-};
-static const VkPhysicalDeviceFeatures2 required = {
-    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-    .pNext = (void *)&required12,
-    .features = {.shaderStorageImageExtendedFormats = VK_TRUE}, // rg32f storage images
-};
-
-const tyn_requirements *tyn_requirements_get(void)
-{
-    static const char *const none[] = {NULL};
-    static const tyn_requirements requirements = {VK_API_VERSION_1_3, &required, none};
-    return &requirements;
-}
-
-static const void *find_in_chain(const void *chain, VkStructureType type)
-{
-    for (const VkBaseInStructure *s = chain; s; s = s->pNext) {
-        if (s->sType == type) {
-            return s;
-        }
-    }
-    return NULL;
-}
-
-const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled)
-{
-    const VkPhysicalDeviceVulkan12Features *v12 =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
-    const VkPhysicalDeviceVulkan13Features *v13 =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
-    // A host may chain the promoted structs instead of the core ones.
-    const VkPhysicalDeviceScalarBlockLayoutFeatures *scalar =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES);
-    const VkPhysicalDeviceSynchronization2Features *sync2 =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
-    const VkPhysicalDeviceMaintenance4Features *maint4 =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
-    const VkPhysicalDeviceDynamicRenderingFeatures *rendering =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES);
-    if (!enabled || !enabled->features.shaderStorageImageExtendedFormats) {
-        return "shaderStorageImageExtendedFormats";
-    }
-    if (!(v12 && v12->scalarBlockLayout) && !(scalar && scalar->scalarBlockLayout)) {
-        return "scalarBlockLayout";
-    }
-    if (!(v13 && v13->synchronization2) && !(sync2 && sync2->synchronization2)) {
-        return "synchronization2";
-    }
-    if (!(v13 && v13->maintenance4) && !(maint4 && maint4->maintenance4)) {
-        return "maintenance4";
-    }
-    if (!(v13 && v13->dynamicRendering) && !(rendering && rendering->dynamicRendering)) {
-        return "dynamicRendering";
-    }
-    return NULL;
-}
-
-static bool separates_stencil(const VkPhysicalDeviceFeatures2 *enabled)
-{
-    const VkPhysicalDeviceVulkan12Features *v12 =
-        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
-    const VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures *own = find_in_chain(
-        enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES);
-    return (v12 && v12->separateDepthStencilLayouts) || (own && own->separateDepthStencilLayouts);
-}
 
 const char *tyn_device_name(const tyn_device *dev)
 {
@@ -149,34 +72,6 @@ static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkFilter
                                    NULL, out));
 }
 
-// Formats that passes sample with linear filtering or store to, beyond what Vulkan promises.
-static tyn_result check_formats(const tyn_device *dev)
-{
-    static const struct {
-        VkFormat format;
-        const char *name;
-        VkFormatFeatureFlags need;
-    } formats[] = {
-        {VK_FORMAT_R16_SFLOAT, "R16_SFLOAT", VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT},
-        {VK_FORMAT_R32_SFLOAT, "R32_SFLOAT",
-         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
-        {VK_FORMAT_R32G32_SFLOAT, "R32G32_SFLOAT",
-         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
-        {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT",
-         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
-    };
-    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-        VkFormatProperties p;
-        dev->vk.GetPhysicalDeviceFormatProperties(dev->physical_device, formats[i].format, &p);
-        if ((p.optimalTilingFeatures & formats[i].need) != formats[i].need) {
-            return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
-                             "device '%s' cannot filter or store images of format %s",
-                             dev->properties.deviceName, formats[i].name);
-        }
-    }
-    return TYN_OK;
-}
-
 void tyn_device_describe(const tyn_procs *vk, VkPhysicalDevice device,
                          VkPhysicalDeviceProperties *properties, char driver[256])
 {
@@ -235,7 +130,12 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
         return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "queue_family %u has no compute",
                          dev->queue_family);
     }
-    TYN_TRY(check_formats(dev));
+    char missing[256];
+    tyn_need_unmet(tyn_needs_of_device(&dev->vk, dev->physical_device, dev->queue_family), missing);
+    if (missing[0]) {
+        return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED, "device '%s' lacks %s",
+                         dev->properties.deviceName, missing);
+    }
 
     const struct {
         VkSamplerAddressMode u;
@@ -317,10 +217,12 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
                          "tyn_device_create: allocator.%s is NULL; give both or none",
                          params->allocator.allocate ? "free" : "allocate");
     }
-    const char *missing = tyn_missing_feature(params->features);
-    if (missing) {
+    const uint64_t features = tyn_needs_features(params->features);
+    char missing[256];
+    tyn_need_unmet(features | ~tyn_needs_features(tyn_requirements_get()->features), missing);
+    if (missing[0]) {
         return TYN_FAULT(log, TYN_ERR_UNSUPPORTED,
-                         "tyn_device_create: feature %s is not enabled on the device; "
+                         "tyn_device_create: %s is not enabled on the device; "
                          "tyn_requirements_get() lists what is needed",
                          missing);
     }
@@ -334,7 +236,7 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
     dev->device = params->device;
     dev->queue_family = params->queue_family;
     dev->debug_names = params->debug_names;
-    dev->separate_stencil = separates_stencil(params->features);
+    dev->separate_stencil = tyn_need_in(features, TYN_NEED_separateDepthStencilLayouts);
     dev->allocator = params->allocator;
     tyn_result result =
         tyn_device_init(dev, params->get_instance_proc_addr,

@@ -60,9 +60,6 @@ VkResult tyn_vk_made(VkResult result, void *handle, size_t size);
 void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
                             const char *name);
 
-// The first required feature that `enabled` lacks, or NULL.
-const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled);
-
 // Of both ways to a device: the cache that was given, and who compiles.
 typedef struct tyn_pipeline_params {
     const void *cache;

@@ -2,6 +2,7 @@
 #include "gpu/compiler.h"
 #include "base/fault.h"
 #include "base/given.h"
+#include "gpu/needs.h"
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -146,7 +147,8 @@ typedef struct candidate {
     VkPhysicalDevice device;
     VkPhysicalDeviceProperties properties;
     char driver[256];
-    const char *missing; // NULL = usable
+    uint64_t met;      // rows of the table of needs
+    char missing[256]; // "" = usable
     uint32_t queue_family;
 } candidate;
 
@@ -154,18 +156,6 @@ static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
 {
     candidate c = {.device = device, .queue_family = UINT32_MAX};
     tyn_device_describe(vk, device, &c.properties, c.driver);
-    if (c.properties.apiVersion < VK_API_VERSION_1_3) {
-        c.missing = "Vulkan 1.3";
-        return c;
-    }
-    VkPhysicalDeviceVulkan13Features v13 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    VkPhysicalDeviceVulkan12Features v12 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13};
-    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                          .pNext = &v12};
-    vk->GetPhysicalDeviceFeatures2(device, &features);
-    c.missing = tyn_missing_feature(&features);
     VkQueueFamilyProperties families[16];
     uint32_t count = 16;
     vk->GetPhysicalDeviceQueueFamilyProperties(device, &count, families);
@@ -179,9 +169,8 @@ static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
             }
         }
     }
-    if (c.queue_family == UINT32_MAX && !c.missing) {
-        c.missing = "a compute queue";
-    }
+    c.met = tyn_needs_of_device(vk, device, c.queue_family);
+    tyn_need_unmet(c.met, c.missing);
     return c;
 }
 
@@ -220,7 +209,7 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
         candidate c = inspect(&dev->vk, devices[i]);
         bool wanted = !select ||
                       (by_index ? i == index : strcasestr(c.properties.deviceName, select) != NULL);
-        int score = (c.missing ? 0 : 10) + kinds[kind_of(&c)].rank;
+        int score = (c.missing[0] ? 0 : 10) + kinds[kind_of(&c)].rank;
         if (wanted && score > best) {
             best = score;
             *out = c;
@@ -232,7 +221,7 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
             "device '%s' is not there; the %u devices are listed by `tyndall info --devices`",
             select, count);
     }
-    if (out->missing) {
+    if (out->missing[0]) {
         return TYN_FAULT(&dev->log, TYN_ERR_DEVICE, "device '%s' lacks %s",
                          out->properties.deviceName, out->missing);
     }
@@ -355,10 +344,11 @@ int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
         infos[i] = (tyn_device_info){.api_version = c.properties.apiVersion,
                                      .type = kinds[kind_of(&c)].name,
                                      .heap_bytes = memory.memoryHeaps[0].size,
+                                     .met = c.met,
                                      .capacity = tyn_device_capacity(&dev.vk, devices[i])};
         snprintf(infos[i].name, sizeof infos[i].name, "%s", c.properties.deviceName);
         snprintf(infos[i].driver, sizeof infos[i].driver, "%s", c.driver);
-        snprintf(infos[i].missing, sizeof infos[i].missing, "%s", c.missing ? c.missing : "");
+        snprintf(infos[i].missing, sizeof infos[i].missing, "%s", c.missing);
     }
     dev.vk.DestroyInstance(dev.instance, NULL);
     dlclose(dev.loader);

@@ -29,6 +29,16 @@ typedef struct tyn_requirements {
 } tyn_requirements;
 TYN_API const tyn_requirements *tyn_requirements_get(void);
 
+// All that the library asks of a device, in one table: devices are chosen and made by it. `tyndall info --devices` prints it.
+typedef struct tyn_need {
+    const char *kind;     // "Vulkan", "feature", "limit", "format", "queue", "extension"
+    const char *name;     // as Vulkan has it
+    uint32_t least;       // of a limit
+    const char *use;      // what it is for
+    const char *fallback; // what is done without it; NULL: a device without it cannot be used
+} tyn_need;
+TYN_API const tyn_need *tyn_needs(uint32_t *count); // static data; at most 64
+
 // ---- memory of the host's ---------------------------------------------------------------------
 
 // A block of device memory that is asked for. Buffers and images both are put into it.
@@ -117,6 +127,7 @@ typedef struct tyn_device_info {
     uint32_t api_version;
     const char *type; // "discrete", "integrated", "virtual", "cpu", "other"
     uint64_t heap_bytes;
+    uint64_t met; // bit i: the device has tyn_needs()[i]
     tyn_capacity capacity;
 } tyn_device_info;
 TYN_API int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log);
