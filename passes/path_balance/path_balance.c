@@ -4,6 +4,7 @@
 #include "path_balance.h"
 #include "shaders/path/path_args.h"
 #include "passes/path_balance_tables.h"
+#include <string.h>
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -34,18 +35,22 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t groups = each * p->num_samples;
     const uint32_t threads = groups < p->threads ? groups : p->threads;
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
-        const uint32_t before = each * (p->first_sample * p->chunks + chunk * p->num_samples);
-        struct path_args args = path_trace_args(p, 0, 1, threads);
+        const uint64_t before =
+            each * ((uint64_t)p->first_sample * p->chunks + (uint64_t)chunk * p->num_samples);
+        const uint64_t path = before * kinds;
+        const float groups_before = (float)before;
+        struct path_args args =
+            path_trace_args(p, (uint32_t)(path / TYN_PATH_BALANCE_BLOCK), 1, threads);
         args.num_samples = groups * kinds;
-        args.first_sample = before * kinds;
+        args.first_sample = (uint32_t)(path % TYN_PATH_BALANCE_BLOCK);
         TYN_DISPATCH(r, .kernel = KERNEL_PATH_BALANCE, .cells = {threads, 1, 1}, .args = &args,
                      .spec = spec);
         struct path_resolve_args sum = {
             .num = 1,
             .slots = threads,
-            .samples_before = before,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
+        memcpy(&sum.samples_before, &groups_before, sizeof groups_before);
         TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1},
                      .args = &sum);
     }

@@ -223,9 +223,18 @@ void follow_light(inout rng_state rng)
     }
 }
 
+uint beyond = 0u; // paths of this thread in the next block
+
 bool path_next(inout uint element, inout uint first, inout uint end)
 {
-    return false;
+    if (beyond == 0u) {
+        return false;
+    }
+    element++;
+    first = 0u;
+    end = beyond;
+    beyond = 0u;
+    return true;
 }
 
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
@@ -345,8 +354,17 @@ void main()
     partial.count = 0u;
     uint groups = args.num_samples / num_places();
     uint each = groups / args.slots, more = groups % args.slots;
-    uint first = args.first_sample + num_places() * (thread * each + min(thread, more));
-    path_run(0u, first, first + num_places() * (each + (thread < more ? 1u : 0u)));
+    uint block = args.first, first = args.first_sample + num_places() * (thread * each + min(thread, more));
+    if (first >= TYN_PATH_BALANCE_BLOCK) {
+        block++;
+        first -= TYN_PATH_BALANCE_BLOCK;
+    }
+    uint end = first + num_places() * (each + (thread < more ? 1u : 0u));
+    if (end > TYN_PATH_BALANCE_BLOCK) {
+        beyond = end - TYN_PATH_BALANCE_BLOCK;
+        end = TYN_PATH_BALANCE_BLOCK;
+    }
+    path_run(block, first, end);
     partials[thread] = partial;
     path_tally(thread == 0u && path_count.hits > 0u ? 1u : 0u);
 }

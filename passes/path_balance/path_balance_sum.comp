@@ -13,6 +13,7 @@ TYN_WRITE(2, result, path_balance_result result);
 TYN_WRITE(3, balance, TYN_BALANCE_MEMBERS);
 TYN_ARGS(path_resolve_args args);
 
+#define PATH_SAMPLES_BEFORE uintBitsToFloat(args.samples_before)
 #include "shaders/path/path_probe_merge.glsl"
 
 shared float values[TYN_PATH_BALANCE_VALUES], errors[TYN_PATH_BALANCE_VALUES];

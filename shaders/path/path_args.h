@@ -43,7 +43,7 @@
 #define TYN_PATH_FROM_LIGHTS 1024u
 
 struct path_args {
-    tyn_uint first;                     // pixel or point of this dispatch's first thread
+    tyn_uint first;                     // pixel or point of the first thread; balance: block
     tyn_uint num;                       // pixels or points of this dispatch
     tyn_uint slots;                     // threads a pixel
     tyn_uint first_sample, num_samples; // of this dispatch, for every pixel
@@ -76,7 +76,7 @@ struct path_resolve_args {
     tyn_uint first, num; // pixels or points, as in path_args
     tyn_uint slots;
     tyn_uint width;          // of the image, pixels
-    tyn_uint samples_before; // in the running statistics; 0: start anew
+    tyn_uint samples_before; // in the running statistics; 0: start anew. Balance: bits of a float
     tyn_uint layers;         // 1: single, multiple, transmittance as well
     tyn_uint opaque;         // 1: a background is seen, alpha is 1
     tyn_uint resumed;        // images: 1: they are those that are gone on from
@@ -106,6 +106,8 @@ TYN_ASSERT_SIZE(path_probe_result, 96);
 // A balance's values, 3 channels each: entering, emitted, absorbed by media, escaped, absorbed by surfaces; W. Then
 // what is given less what is taken of the same samples, for its standard error.
 #define TYN_PATH_BALANCE_VALUES 18
+// Paths of a balance are numbered in blocks, as more than 2^32 are drawn in minutes: a multiple of all numbers of kinds of points.
+#define TYN_PATH_BALANCE_BLOCK 3221225472u
 
 struct path_balance_partial { // likewise
     float mean[TYN_PATH_BALANCE_VALUES], deviation[TYN_PATH_BALANCE_VALUES];

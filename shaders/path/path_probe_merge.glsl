@@ -3,6 +3,9 @@
 // and `args` (path_resolve_args).
 #ifndef TYN_PATH_PROBE_MERGE_GLSL
 #define TYN_PATH_PROBE_MERGE_GLSL
+#ifndef PATH_SAMPLES_BEFORE
+#define PATH_SAMPLES_BEFORE float(args.samples_before)
+#endif
 
 // Mean and standard error of one value, so far: Chan, Golub and LeVeque's merge, in a fixed order.
 vec2 probe_merge(uint thread, uint element, uint value)
@@ -18,7 +21,7 @@ vec2 probe_merge(uint thread, uint element, uint value)
         }
     }
 
-    float mean = 0.0, low = 0.0, deviation = 0.0, before = float(args.samples_before);
+    float mean = 0.0, low = 0.0, deviation = 0.0, before = PATH_SAMPLES_BEFORE;
     if (args.samples_before > 0u) {
         mean = states[element].mean[value];
         low = states[element].low[value];
