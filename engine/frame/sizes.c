@@ -18,8 +18,7 @@ static uint64_t add_view(uint64_t h, const tyn_view *view)
     h = tyn_hash_u64(h, (uint64_t)view->width << 32 | view->height);
     h = tyn_hash_u64(h, (uint64_t)view->whole[0] << 32 | view->whole[1]);
     h = tyn_hash_u64(h, (uint64_t)view->outputs << 32 | view->num_points);
-    h = tyn_hash_u64(h, (uint64_t)view->num_samples << 2 | (view->resume != NULL) << 1 |
-                            view->scattered_only);
+    h = tyn_hash_u64(h, (uint64_t)(view->resume != NULL) << 1 | view->scattered_only);
     return tyn_hash_u64(h, (uint64_t)view->max_depth << 32 | view->rr_depth);
 }
 

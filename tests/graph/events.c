@@ -473,6 +473,19 @@ static void values_do_not_refuse(void **state)
     }
 }
 
+static void more_samples(stage *st)
+{
+    st->view.num_samples = 3;
+    colour_medium(st); // which asks for other kernels
+}
+
+static void samples_are_values(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        cost_of("path", &(struct event){"", nothing, more_samples, true, false}).record, 'p');
+}
+
 // Colours and strengths run no node that does not read them, and make nothing.
 static void strengths_are_values(void **state)
 {
@@ -529,6 +542,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(page_is_true),
         cmocka_unit_test(values_do_not_refuse),
+        cmocka_unit_test(samples_are_values),
         cmocka_unit_test(strengths_are_values),
         cmocka_unit_test(dark_lights_are_not_there),
     };
