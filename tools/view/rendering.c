@@ -55,7 +55,11 @@ rendering_state rendering_begin(rendering *r, const tyn_scene *scene, const tyn_
     if (prepared != TYN_OK) {
         return prepared == TYN_PENDING ? RENDERING_PENDING : RENDERING_FAILED;
     }
+    // Anew for each frame: another scene or camera takes another time.
     r->most = tyn_context_batch(r->context, &frame);
+    if (asked.num_samples > r->most) {
+        asked.num_samples = r->batch = r->most;
+    }
     if (!gpu_begin(g, &r->commands) || tyn_context_record(r->context, &frame) != TYN_OK ||
         !gpu_submit(g, &r->commands, VK_NULL_HANDLE, VK_NULL_HANDLE)) {
         return RENDERING_FAILED;
