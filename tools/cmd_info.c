@@ -76,6 +76,11 @@ static void print_range(const tyn_param *p)
         break;
     case TYN_PARAM_INT:
     case TYN_PARAM_FLOAT:
+        if (p->least > 0) {
+            printf("%.7g or %.7g to %.7g%s%s, default %.7g", p->min, p->least, p->max,
+                   p->unit[0] ? " " : "", p->unit, p->def);
+            break;
+        }
         printf("%.7g to %.7g%s%s, default %.7g", p->min, p->max, p->unit[0] ? " " : "", p->unit,
                p->def);
         break;

@@ -104,7 +104,8 @@ static bool parse_value(const tyn_param *param, const char *text, double *value)
     *value = strtod(text, &end);
     bool number = *text && !*end && errno == 0 && isfinite(*value);
     bool whole = param->type == TYN_PARAM_FLOAT || *value == floor(*value);
-    return number && whole && *value >= param->min && *value <= param->max;
+    return number && whole && *value >= param->min && *value <= param->max &&
+           (*value == param->min || *value >= param->least);
 }
 
 static void describe_range(char *text, size_t size, const tyn_param *param)
@@ -117,9 +118,14 @@ static void describe_range(char *text, size_t size, const tyn_param *param)
             at += (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", param->names[i]);
         }
     } else {
-        snprintf(text, size, "%s from %g to %g%s%s",
-                 param->type == TYN_PARAM_INT ? "a whole number" : "a number", param->min,
-                 param->max, *param->unit ? " " : "", param->unit);
+        char apart[32] = "";
+        if (param->least > 0) {
+            snprintf(apart, sizeof apart, "%g or ", param->min);
+        }
+        snprintf(text, size, "%s%s from %g to %.7g%s%s", apart,
+                 param->type == TYN_PARAM_INT ? "a whole number" : "a number",
+                 param->least > 0 ? param->least : param->min, param->max, *param->unit ? " " : "",
+                 param->unit);
     }
 }
 

@@ -65,11 +65,11 @@ enum { TYN_PATH_GUIDE_NONE, TYN_PATH_GUIDE_LIGHTS, TYN_PATH_GUIDE_FIELD };
 // clang-format on
 
 static const tyn_param path_params_table[] = {PATH_PARAMS};
-// Of passes whose results do not depend on the number of threads, but for rounding.
+// Of passes whose results do not depend on the number of threads, but for rounding. Below 256 a picture takes minutes.
 static const tyn_param path_split_params_table[] = {
     PATH_PARAMS,
     {"threads", TYN_PARAM_INT, offsetof(tyn_path_params, threads), 0, 0, 1048576, "",
-     "of a dispatch, at most; 0 = by the device", NULL},
+     "of a dispatch, at most; 0 = by the device", NULL, 256},
 };
 
 // Elements (pixels, points) are worked off in tiles of at most `threads`; where there are fewer, several

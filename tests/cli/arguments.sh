@@ -87,6 +87,7 @@ refuses 2 "magic" render a.gltf -D magic.power=3
 refuses 2 "lattice" render a.gltf -D lattice.power=3
 refuses 2 "cells" render a.gltf -D lattice.cells=many
 refuses 2 "cells" render a.gltf -D lattice.cells=-5
+refuses 2 "setting 'path.threads' is '1'; it must be 0 or a whole number from 256 to 1048576" render a.gltf -m path -D path.threads=1
 
 # ---- inputs ----
 refuses 2 "nothere.gltf" info nothere.gltf

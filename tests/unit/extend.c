@@ -30,7 +30,7 @@ static void layout(void **state)
         SIZE(tyn_binding, 12),
         SIZE(tyn_raster, 40),
         SIZE(tyn_kernel, 64),
-        SIZE(tyn_param, 72),
+        SIZE(tyn_param, 80),
         SIZE(tyn_counter, 48),
         SIZE(tyn_pass_desc, 152),
         SIZE(tyn_dispatch, 56),
@@ -79,7 +79,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 14);
+    assert_int_equal(TYN_EXTEND_ABI, 15);
     assert_int_equal(changed, 0);
 }
 

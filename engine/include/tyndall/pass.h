@@ -182,6 +182,7 @@ typedef struct tyn_param {
     const char *unit;         // "1/m", "cells", "" for none
     const char *doc;          // one line
     const char *const *names; // ENUM: the values' names
+    double least; // numbers: `min` has a meaning of its own, others are at least this; 0: none
 } tyn_param;
 
 // ---- counters -------------------------------------------------------------------------------
