@@ -26,7 +26,7 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_SINGLE + RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS +
                        RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS +
                        RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
-                       RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
+                       RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_PIXELS + RAYMARCH_SPOTS +
                        RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE + RAYMARCH_NOISE + RAYMARCH_TABLED ==
                    UINT32_MAX >> 2,
                "features have bits of their own");
@@ -212,25 +212,27 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
 static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dispatch rays,
                           uint32_t *spec, struct raymarch_args *args)
 {
-    const uint32_t features = spec[2];
+    const uint32_t features = spec[2], both = RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_PIXELS;
+    const uint32_t nodes = p->parted ? RAYMARCH_SPARSE_NODES : both;
+    const uint32_t pixels = p->parted ? RAYMARCH_SPARSE_PIXELS : both;
     const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
     const struct raymarch_rest empty[2] = {none, none};
     tyn_rec_update(r, RAYMARCH_PORT_REST, 0, empty, sizeof empty);
     args->spacing = features & (RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? 2 : RAYMARCH_NODES;
     args->lists[0] = 0;
     args->lists[1] = ((p->width + 1) / 2) * ((p->height + 1) / 2);
-    args->listed = 0;
+    args->rays = RAYMARCH_ALL_NODES;
     rays.cells = grid_of(p, args->spacing);
     rays.label = "sparse rays";
-    spec[2] = features | RAYMARCH_SPARSE_NODES;
+    spec[2] = features | nodes;
     tyn_rec_dispatch(r, &rays);
     if (args->spacing > 2) {
         rays.label = "nodes that lie between";
         spec[2] = features | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_COARSE;
         tyn_rec_dispatch(r, &rays);
         rays.label = "rays of the other nodes";
-        args->listed = 1;
-        spec[2] = features | RAYMARCH_SPARSE_NODES;
+        args->rays = RAYMARCH_LISTED_NODES;
+        spec[2] = features | nodes;
         tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
     }
     rays.label = "pixels that lie between";
@@ -238,7 +240,8 @@ static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dis
     spec[2] = features | RAYMARCH_SPARSE_FILL;
     tyn_rec_dispatch(r, &rays);
     rays.label = "rays of the other pixels";
-    spec[2] = features | RAYMARCH_SPARSE_REST;
+    args->rays = RAYMARCH_LISTED_PIXELS;
+    spec[2] = features | pixels;
     tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, sizeof(struct raymarch_rest));
 }
 

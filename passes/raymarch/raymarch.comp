@@ -18,16 +18,16 @@
 #include "raymarch.glsl"
 #include "raymarch_pixel.glsl"
 #include "raymarch_sparse.glsl"
+#include "raymarch_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 void main()
 {
     uvec2 at = pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (raymarch_has(RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_REST)) {
-        uint group = gl_WorkGroupID.y * RAYMARCH_REST_GROUPS + gl_WorkGroupID.x;
-        sparse_main(64u * group + gl_LocalInvocationIndex, ivec2(at));
-    } else if (all(lessThan(args.first + at, args.end))) {
-        shade_pixel(ivec2(args.first + at));
+    if (raymarch_has(RAYMARCH_SPARSE_FILL)) {
+        fill_cells(ivec2(at));
+    } else {
+        march_rays(64u * (gl_WorkGroupID.y * RAYMARCH_REST_GROUPS + gl_WorkGroupID.x) + gl_LocalInvocationIndex, ivec2(at));
     }
 }

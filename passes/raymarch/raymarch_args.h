@@ -2,6 +2,7 @@
 #include "shaders/common/shared.h"
 
 // Bits of the specialisation constant "features".
+#define RAYMARCH_SPEC_FEATURES 2   // number of that constant
 #define RAYMARCH_KERNELS (1u << 0) // sunlight scattered forward any number of times, else once only
 #define RAYMARCH_FIELD (1u << 1)   // light of the texture inscatter
 #define RAYMARCH_ONE_CHANNEL (1u << 2) // inscatter has one channel
@@ -26,12 +27,18 @@
 #define RAYMARCH_WALLS (1u << 21)         // surfaces part the cells of inscatter
 #define RAYMARCH_SHADOWS (1u << 22)       // surfaces stand before suns and lamps
 #define RAYMARCH_REPEAT (1u << 23)        // the medium is periodic
-#define RAYMARCH_SPARSE_NODES (1u << 24)  // rays of nodes, into "sparse": of all, or of the listed
+#define RAYMARCH_SPARSE_NODES (1u << 24)  // rays of nodes, into "sparse"
 #define RAYMARCH_SPARSE_FILL (1u << 25)   // pixels where that is smooth; the others are listed
-#define RAYMARCH_SPARSE_REST (1u << 26)   // rays of those that are listed
+#define RAYMARCH_SPARSE_COARSE (1u << 26) // with SPARSE_FILL: nodes of the finer grid
 #define RAYMARCH_SPOTS (1u << 27)         // there are lamps that shine in a cone
-#define RAYMARCH_SPARSE_COARSE (1u << 28) // with SPARSE_FILL: nodes of the finer grid
+#define RAYMARCH_SPARSE_PIXELS                                                                     \
+    (1u << 28)                    // rays of listed pixels; with SPARSE_NODES args.rays tells which
 #define RAYMARCH_NOISE (1u << 29) // places at which medium and light are looked up are moved
+
+// args.rays
+#define RAYMARCH_ALL_NODES 0
+#define RAYMARCH_LISTED_NODES 1
+#define RAYMARCH_LISTED_PIXELS 2
 
 struct raymarch_args {
     float step;       // longest step, m
@@ -45,7 +52,7 @@ struct raymarch_args {
     float reach;      // of lamps that are marched nearby only, m (radial_reach)
     tyn_uvec2 lists;  // where the lists in the buffer "rest" begin: of nodes, and of pixels
     tyn_uint spacing; // of the nodes of the first grid, pixels: 2 or 4
-    tyn_uint listed;  // SPARSE_NODES: 1: only those that are listed
+    tyn_uint rays;    // sparse: RAYMARCH_ALL_NODES, ...
     float noise;      // by how much along an axis at most, m
     float noise_size; // of the largest features, m
 };

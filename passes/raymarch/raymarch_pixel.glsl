@@ -1,4 +1,4 @@
-// raymarch_pixel.glsl -- the rays of one pixel and what is stored of them.
+// raymarch_pixel.glsl -- where the rays of a pixel go, and what is stored of them.
 //
 // Include after raymarch.glsl, background.glsl, surface_samples.glsl, glow.glsl and display.glsl.
 // Pixel of a thread of an 8x8 group, so that any 8 threads in a row are a block of 4x2 pixels, whose
@@ -130,31 +130,6 @@ void add_light(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, 
     sum.radiance += group.share * light;
 }
 
-// Adds the ray through `where` in the pixel. To samples of several surfaces it has the same way as far as the first
-// of them, and goes on through the middle of the others: these never see what is behind the first.
-void add_ray(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, surface_group group)
-{
-    float left = 1.0, start = 0.0;
-    march_state state = march_start(display_bayer(uvec2(pixel)));
-    while (left > 1e-3) {
-        pixel_ray to = ray_to(pixel, where, group);
-        start = to.span.x;
-        // Distances from where the ray enters: the camera may be far away.
-        march_result r = march_ray(state, to.ray.origin + start * to.ray.direction, to.ray.direction,
-                                   max(to.span.y - start, 0.0), start);
-        add_light(sum, pixel, where, footprint, group, to, r, state.single);
-        left -= group.share;
-        if (!raymarch_has(RAYMARCH_SURFACE)) {
-            break;
-        }
-        if (left > 1e-3) {
-            group = surface_group_from(camera, pixel, group.left, true);
-        }
-    }
-    sum.half_distance = min(sum.half_distance, start + state.half_distance);
-    sum.steps += state.steps;
-}
-
 pixel_light pixel_light_none()
 {
     return pixel_light(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, TYN_INFINITY, TYN_INFINITY, 0u, false);
@@ -215,20 +190,4 @@ void store_pixel(ivec2 pixel, pixel_light sum, float share)
     if (raymarch_has(RAYMARCH_MULTIPLE)) {
         imageStore(multiple_image, pixel, vec4(multiple, 1.0));
     }
-}
-
-void shade_pixel(ivec2 pixel)
-{
-    pixel_light sum = pixel_light_none();
-    surface_group group = first_surface(pixel, true);
-    uint shapes_met, num_rays = group.share < 1.0 ? 1u : rays_of_pixel(pixel, shapes_met);
-    for (uint i = 0u; i < num_rays; i++) {
-        vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
-        add_ray(sum, pixel, where, num_rays == 1u ? 1.0 : 0.5, group);
-    }
-    if (sum.met) {
-        atomicAdd(counters.steps, sum.steps);
-        atomicAdd(counters.pixels, 1u);
-    }
-    store_pixel(pixel, sum, 1.0 / float(num_rays));
 }

@@ -57,28 +57,6 @@ float sparse_nearness(pixel_ray to)
     return to.surface < TYN_INFINITY ? 1.0 / max(to.surface, 1e-30) : 0.0;
 }
 
-void march_node(ivec2 node)
-{
-    ivec2 pixel = sparse_pixel(node);
-    surface_group group = first_surface(pixel, true);
-    uint shapes_met;
-    bool simple = is_simple(pixel, group, shapes_met);
-    pixel_ray to = ray_to(pixel, vec2(0.5), group);
-    march_state state = march_start(0.5);
-    march_result r = march_ray(state, to.ray.origin + to.span.x * to.ray.direction, to.ray.direction,
-                               simple ? max(to.span.y - to.span.x, 0.0) : 0.0, to.span.x);
-    simple = simple && is_finite(r.radiance) && is_finite(r.transmittance);
-    if (state.steps > 0u) {
-        atomicAdd(counters.steps, state.steps);
-    }
-    imageStore(sparse_image, sparse_texel(node, SPARSE_RADIANCE), vec4(r.radiance, simple ? 1.0 : -1.0));
-    imageStore(sparse_image, sparse_texel(node, SPARSE_TRANSMITTANCE), vec4(r.transmittance, sparse_nearness(to)));
-    imageStore(sparse_image, sparse_texel(node, SPARSE_SCALED), vec4(r.scaled_transmittance, float(shapes_met)));
-    if (SPARSE_HAS_SINGLE) {
-        imageStore(sparse_image, sparse_texel(node, SPARSE_SINGLE), vec4(state.single, 0.0));
-    }
-}
-
 struct sparse_ray {
     vec3 radiance, transmittance, scaled_transmittance, single;
 };
@@ -345,31 +323,15 @@ void fill_pixels(ivec2 node)
     }
 }
 
-// Thread `i` of a dispatch for what was listed, in groups of 64; `at`: of one for the picture or its cells.
-void sparse_main(uint i, ivec2 at)
+void fill_cells(ivec2 at)
 {
-    ivec2 place;
-    if (raymarch_has(RAYMARCH_SPARSE_REST)) {
-        if (listed_place(1, i, place)) {
-            shade_pixel(place);
-        }
+    ivec2 node = (raymarch_has(RAYMARCH_SPARSE_COARSE) ? 2 : 1) * at;
+    if (!in_window(sparse_pixel(node))) {
         return;
     }
-    int stride = raymarch_has(RAYMARCH_SPARSE_FILL) ? (raymarch_has(RAYMARCH_SPARSE_COARSE) ? 2 : 1) : int(args.spacing) / 2;
-    ivec2 node = stride * at;
-    bool is = in_window(sparse_pixel(node));
-    if (raymarch_has(RAYMARCH_SPARSE_NODES)) {
-        if (args.listed != 0u) {
-            is = listed_place(0, i, node);
-        }
-        if (is) {
-            march_node(node);
-        }
-    } else if (is) {
-        if (stride == 2) {
-            fill_nodes(node);
-        } else {
-            fill_pixels(node);
-        }
+    if (raymarch_has(RAYMARCH_SPARSE_COARSE)) {
+        fill_nodes(node);
+    } else {
+        fill_pixels(node);
     }
 }

@@ -649,29 +649,31 @@ static void host_depth_sparse(void **state)
     enum { SIZE = 64, N = SIZE * SIZE };
     gpu_test *t = *state;
     march_scene *s = malloc(sizeof *s);
-    static float depth[N], all[N][4];
+    static float depth[N], all[N][4], parted[N][4];
     for (int i = 0; i < N; i++) {
         const int x = i % SIZE, y = i / SIZE;
         const float away = 1.6f + 0.8f * (float)y / SIZE; // from the front of the box to its back
         const bool hole = x / 16 % 2 && y / 16 % 2, comb = y > 48 && x % 5 == 0;
         depth[i] = hole || comb ? 0 : 0.1f / away;
     }
-    for (int sparse = 0; sparse < 2; sparse++) {
+    for (int i = 0; i < 3; i++) { // every pixel; at a lower resolution by two kernels; by one
         make_cube(s, 2, 0.5f, 0.4f);
         set_sun(s, 0.3f, 0.5f, -1);
         set_camera(s, 0, 1, 0, 2); // the box is from 1.5 to 2.5
         s->camera.orthographic = 0;
         s->camera.size[0] = s->camera.size[1] = s->params.width = s->params.height = SIZE;
         s->params.background = 1;
-        s->params.sparse = sparse;
+        s->params.sparse = i > 0;
+        s->params.parted = i == 1;
         s->env.radiance[0] = 3;
         s->host_depth = depth;
         memcpy(s->params.depth, (float[]){0, 0.1f, -1, 0}, sizeof s->params.depth);
         run(t, s);
-        if (sparse == 0) {
-            memcpy(all, pixel(t, s, "radiance", 0, 0), sizeof all);
+        if (i < 2) {
+            memcpy(i ? parted : all, pixel(t, s, "radiance", 0, 0), sizeof all);
         }
     }
+    assert_memory_equal(parted, pixel(t, s, "radiance", 0, 0), sizeof parted);
     const float(*found)[4] = (const float(*)[4])pixel(t, s, "radiance", 0, 0);
     double sum = 0, apart = 0, worst = 0;
     int differ = 0;

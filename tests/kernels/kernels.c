@@ -8,6 +8,7 @@
 #include "gpu/compiler.h"
 #include "gpu/device.h"
 #include "gpu/specialize.h"
+#include "passes/raymarch/raymarch_args.h"
 #include "shaders/path/path_args.h"
 #include "skip.h"
 #include "todo.h"
@@ -271,7 +272,7 @@ static void say(void *user, tyn_log_level level, const char *message)
 static double now_ms(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
@@ -294,12 +295,17 @@ static size_t specialised_size(const tyn_kernel *k, const uint32_t *spec)
     return count * sizeof *words;
 }
 
-// Constants as a card has them: on a processor `path` keeps few triangles in registers.
+// Constants as a card has them: on a processor `path` keeps few triangles in registers, and `raymarch` parts rays of nodes from
+// rays of pixels.
 static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_t *spec)
 {
     memcpy(spec, from, k->num_spec * sizeof *spec);
     if (strncmp(k->name, "path_", 5) == 0 && k->num_spec == TYN_PATH_NUM_SPEC) {
         spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_KEEP_FEW;
+    }
+    const uint32_t rays = RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_PIXELS;
+    if (strncmp(k->name, "raymarch_", 9) == 0 && spec[RAYMARCH_SPEC_FEATURES] & rays) {
+        spec[RAYMARCH_SPEC_FEATURES] |= rays;
     }
 }
 

@@ -116,6 +116,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
     params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
     params->sparse_layers = job->sparse_layers;
+    params->parted = job->capacity.software;
     if (job->refs.depth.resource) {
         memcpy(params->depth, job->host_depth, sizeof params->depth);
     }
