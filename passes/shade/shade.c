@@ -75,7 +75,7 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_shade_params *p = data;
     const bool sky_maps = tyn_rec_has(r, PORT(SKY_MAPS));
     const bool vpls = tyn_rec_has(r, PORT(VPLS)), shared = vpls || sky_maps;
-    const struct shade_args args = {
+    struct shade_args args = {
         .num_directional = p->num_directional,
         .num_lamps = p->num_lamps,
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
@@ -106,7 +106,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t shorter = of_whole.x < of_whole.y ? of_whole.x : of_whole.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
-    const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
+    uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
@@ -128,6 +128,7 @@ static void record(tyn_recorder *r, const void *data)
         }
     }
     if (shared) {
+        tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = KERNEL_VPLS;
         d.cells =
             (tyn_extent){(blocks.x + side - 1) / side,
@@ -135,12 +136,13 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &d);
         const uint32_t of_rows[3] = {side, step, sky_maps};
         TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = blocks, .spec = of_rows);
-        tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = KERNEL_GATHER;
         d.cells = blocks;
         tyn_rec_dispatch(r, &d);
-        d.kernel = KERNEL_PLACES;
+        d.kernel = KERNEL_VPLS;
+        args.listed = 1;
         tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
+        args.listed = 0;
     }
     if (step > 1) {
         d.kernel = KERNEL_SMOOTH;
@@ -150,19 +152,22 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
     // Surfaces look up light of VPLs, or all smooth light.
     const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(PART_ROWS) : PORT(PART)}};
-    uint8_t bound[3][TYN_MAX_BINDINGS];
+    uint8_t bound[2][TYN_MAX_BINDINGS];
+    const uint32_t both = SHADE_PIXELS | SHADE_EDGES;
     d.kernel = KERNEL_SURFACE;
     d.cells = pixels;
     d.ports = tyn_ports_exchanged(&kernels[KERNEL_SURFACE], looked_up, 1, bound[0]);
+    spec[1] = features | (p->parted || samples == 1 ? SHADE_PIXELS : both);
     tyn_rec_dispatch(r, &d);
     if (samples > 1) {
-        d.kernel = KERNEL_EDGES;
-        d.ports = tyn_ports_exchanged(&kernels[KERNEL_EDGES], looked_up, 1, bound[1]);
+        spec[1] = features | (p->parted ? SHADE_EDGES : both);
+        args.listed = 1;
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);
     }
+    spec[1] = features;
     if (shared || step > 1) {
         d.kernel = KERNEL_ALONE;
-        d.ports = tyn_ports_exchanged(&kernels[KERNEL_ALONE], looked_up, 1, bound[2]);
+        d.ports = tyn_ports_exchanged(&kernels[KERNEL_ALONE], looked_up, 1, bound[1]);
         tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
     }
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);

@@ -1,5 +1,5 @@
 // shade_alone.glsl -- lists of what takes all VPLs itself, as neighbours do not tell of its light: blocks of pixels, for
-// shade_places.comp; then pixels with such pieces of surface, for shade_alone.comp. Order does not matter.
+// shade_vpls.comp; then pixels with such pieces of surface, for shade_alone.comp. Order does not matter.
 #include "shaders/surfaces/gbuffer_edges.glsl"
 
 // SHADE_ALONE_TAKEN: the list is gone through; else added to.

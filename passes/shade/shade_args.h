@@ -1,6 +1,10 @@
 // shade_args.h -- features and push constants of the surfaces' shading. Included by C and GLSL.
 #include "shaders/common/shared.h"
 
+// Numbers of specialisation constants.
+#define SHADE_SPEC_FEATURES 1
+#define SHADE_SPEC_SAMPLES 3
+
 // Bits of the specialisation constant "features".
 #define SHADE_MEDIUM (1u << 0)  // light is attenuated on its way
 #define SHADE_SHADOWS (1u << 1) // there are shadow maps
@@ -21,6 +25,10 @@
 #define SHADE_SKY_MAPS                                                                             \
     (1u << 11)                   // the sky's light comes along ordinates, past what their maps show
 #define SHADE_COLUMNS (1u << 12) // ... and through the medium
+
+// shade_surface.comp: every pixel, or those that are listed; with both bits args.listed tells which.
+#define SHADE_PIXELS (1u << 13)
+#define SHADE_EDGES (1u << 14)
 
 // Light of which the pixels of a pattern each take a part.
 #define SHADE_SHARED (SHADE_VPLS | SHADE_SKY_MAPS)
@@ -48,5 +56,6 @@ struct shade_args {
     float sight_edge;
     tyn_uint sky_fan;    // directions of an ordinate
     tyn_uvec3 sky_cells; // that have columns along them
+    tyn_uint listed;     // 1: a thread takes an element of a list
 };
-TYN_ASSERT_SIZE(shade_args, 52);
+TYN_ASSERT_SIZE(shade_args, 56);

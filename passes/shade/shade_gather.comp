@@ -1,6 +1,6 @@
 // shade_gather.comp -- all VPLs' light at a pixel, from what it and its neighbours took: sums of shade_rows.comp along
 // a column. Where too few neighbours lie on the same piece of surface, or on one side only and light changes from pixel to
-// pixel, the pixel takes all VPLs itself: that is left to shade_places.comp.
+// pixel, the pixel takes all VPLs itself: that is left to shade_vpls.comp.
 #include "shade_place.glsl"
 #define SHADE_ALONE_COUNT (SHADE_AT + 2)
 #define SHADE_ALONE (SHADE_AT + 3)

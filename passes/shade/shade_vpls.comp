@@ -1,12 +1,16 @@
-// shade_vpls.comp -- every block of pixels takes a part of the VPLs and of the directions of the sky.
+// shade_vpls.comp -- light of the VPLs and of the directions of the sky at blocks of pixels.
 //
-// Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002, interleaved sampling), and
-// shade_rows.comp and shade_gather.comp sum over the pattern.
-// A thread has several blocks of one place in the pattern.
+// First every block takes a part of them. Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002,
+// interleaved sampling), and shade_rows.comp and shade_gather.comp sum over the pattern. A thread has several blocks of one place in
+// the pattern. Then blocks that shade_gather.comp lists take all of that light (args.listed).
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
-#define SHADE_SKY_AT (SHADE_AT + 1)
+#define SHADE_SKY_AT (SHADE_AT + 3)
 #include "shade_sky.glsl"
+#define SHADE_ALONE_COUNT (SHADE_AT + 1)
+#define SHADE_ALONE (SHADE_AT + 2)
+#define SHADE_ALONE_TAKEN
+#include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -14,43 +18,52 @@ layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D part_image; // s
 
 void main()
 {
-    uint part_of = gl_WorkGroupID.z;
-    ivec2 cell = ivec2(part_of % shade_side, part_of / shade_side), size = shade_blocks();
+    bool listed = args.listed != 0u;
+    uint n = gbuffer_edge() * uint(SHADE_MANY), count = listed ? alone_count.count : 0u, of_pattern = gl_WorkGroupID.z;
+    if (listed && n >= count) {
+        return;
+    }
+    ivec2 cell = ivec2(of_pattern % shade_side, of_pattern / shade_side), size = shade_blocks();
     ivec2 first = shade_side * ivec2(gl_GlobalInvocationID.xy * uvec2(1, SHADE_MANY)) + cell;
+    ivec2 block[SHADE_MANY];
     shade_point p[SHADE_MANY];
     shade_part part[SHADE_MANY];
     uint rooms[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
-        p[i] = shade_place(min(first + ivec2(0, i * shade_side), size - 1), part[i]);
+        block[i] = first + ivec2(0, i * shade_side);
+        if (listed) {
+            uint entry = alone_pixels[min(n + uint(i), count - 1u)].x;
+            block[i] = ivec2(entry & 0xffffu, entry >> 16);
+        }
+        p[i] = shade_place(min(block[i], size - 1), part[i]);
         rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : TYN_ROOMS_ANY;
     }
     // Of many each place takes a 25th; of fewer a fifth, so that any row takes all; of few all. Else differences
     // between parts would be larger than what sums even out.
-    uint side = uint(shade_side), count = shade_has(SHADE_VPLS) ? vpl_count() : 0u;
+    uint side = uint(shade_side), vpls = shade_has(SHADE_VPLS) ? vpl_count() : 0u;
     bool sky = shade_has(SHADE_SKY_MAPS);
-    uint parts = sky ? side * side : count <= SHADE_MOST ? 1u : count <= SHADE_MOST * side ? side : side * side;
-    part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
+    uint parts = sky ? side * side : vpls <= SHADE_MOST ? 1u : vpls <= SHADE_MOST * side ? side : side * side;
+    uint part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : of_pattern;
+    if (listed) {
+        part_of = 0u;
+        parts = 1u;
+    }
     float nearest[SHADE_MANY] = float[](1e30, 1e30, 1e30, 1e30);
     vec3 light[SHADE_MANY] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     if (shade_has(SHADE_VPLS)) {
         light = shade_vpls(p, rooms, part_of, parts, nearest);
     }
     if (sky) {
-        ivec2 block[SHADE_MANY];
-        [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
-            block[i] = first + ivec2(0, i * shade_side);
-        }
         vec3 others[SHADE_MANY] = shade_sky(p, shade_parts(block), part_of, parts);
         [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
             light[i] += others[i];
         }
     }
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
-        ivec2 block = first + ivec2(0, i * shade_side);
-        if (all(lessThan(block, size))) {
+        if (listed ? n + uint(i) < count : all(lessThan(block[i], size))) {
             part[i].irradiance = part[i].along > 0.0 ? light[i] : vec3(0.0);
-            part[i].near = part[i].along > 0.0 && shade_near(p[i], block, nearest[i]);
-            imageStore(part_image, block, shade_pack(part[i]));
+            part[i].near = part[i].along > 0.0 && shade_near(p[i], block[i], nearest[i]);
+            imageStore(part_image, block[i], shade_pack(part[i]));
         }
     }
 }

@@ -9,6 +9,7 @@
 #include "gpu/device.h"
 #include "gpu/specialize.h"
 #include "passes/raymarch/raymarch_args.h"
+#include "passes/shade/shade_args.h"
 #include "shaders/path/path_args.h"
 #include "skip.h"
 #include "todo.h"
@@ -220,10 +221,8 @@ static limit known[] = {
     {"lattice_lamps_vpls", 65536, 90, 4, "four shadow rays at once, each with its place in a beam",
      false},
     {"shade_surface", 180000, 0, 8, "all lights of a surface in one kernel", false},
-    {"shade_edges", 205000, 0, 8, "as shade_surface, of several samples a pixel", false},
     {"shade_alone", 112000, 0, 8, "as shade_surface, without a list", false},
     {"shade_vpls", 113000, 0, 4, "virtual lights with their lobes", false},
-    {"shade_places", 90000, 0, 4, "as shade_vpls", false},
     {"vpl_lights", 72000, 0, 18, "three passes over a stratum, each with all kinds of elements",
      false},
 };
@@ -295,8 +294,8 @@ static size_t specialised_size(const tyn_kernel *k, const uint32_t *spec)
     return count * sizeof *words;
 }
 
-// Constants as a card has them: on a processor `path` keeps few triangles in registers, and `raymarch` parts rays of nodes from
-// rays of pixels.
+// Constants as a card has them: on a processor `path` keeps few triangles in registers, and `raymarch` and `shade` have a
+// kernel for what they list.
 static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_t *spec)
 {
     memcpy(spec, from, k->num_spec * sizeof *spec);
@@ -306,6 +305,9 @@ static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_
     const uint32_t rays = RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_PIXELS;
     if (strncmp(k->name, "raymarch_", 9) == 0 && spec[RAYMARCH_SPEC_FEATURES] & rays) {
         spec[RAYMARCH_SPEC_FEATURES] |= rays;
+    }
+    if (strcmp(k->name, "shade_surface") == 0 && spec[SHADE_SPEC_SAMPLES] > 1) {
+        spec[SHADE_SPEC_FEATURES] |= SHADE_PIXELS | SHADE_EDGES;
     }
 }
 

@@ -130,6 +130,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.outside = beyond && !tyn_is_periodic(job->frame);
     params.hidden = params.outside && tyn_can_trace(job);
     params.textured = job->frame->num_textures > 0;
+    params.parted = job->capacity.software;
     if (params.outside) {
         place_sight(job->frame, &params);
     }
