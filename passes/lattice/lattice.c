@@ -195,23 +195,23 @@ static tyn_extent cells_of(const solve *s, uint32_t level)
     return (tyn_extent){e.x, e.y, e.z * s->params->shape.channels};
 }
 
-// Of colours `first` to 1.
-static void relax(solve *s, uint32_t level, uint32_t first)
+// Of colours `first` to before `end`.
+static void relax(solve *s, uint32_t level, uint32_t first, uint32_t end)
 {
     tyn_extent threads = cells_of(s, level);
     threads.x = (threads.x + 1) / 2;
-    for (uint32_t colour = first; colour < 2; colour++) {
+    for (uint32_t colour = first; colour < end; colour++) {
         on_level(s, KERNEL_RELAX, level, threads, colour);
     }
 }
 
 // V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
-// them has relaxed colour 0.
-static void v_cycle(solve *s, bool fresh)
+// them has relaxed colour 0. Of the last cycle colour 1 is left to the residual.
+static void v_cycle(solve *s, bool fresh, bool last)
 {
     const uint32_t small = s->levels.first_small;
     for (uint32_t l = 0; l < small; l++) {
-        relax(s, l, l > 0 || fresh);
+        relax(s, l, l > 0 || fresh, 2);
         on_level(s, KERNEL_RESTRICT, l + 1, cells_of(s, l + 1), 0);
     }
     on_level(s, KERNEL_COARSE, small,
@@ -219,23 +219,23 @@ static void v_cycle(solve *s, bool fresh)
              small > 0 || fresh);
     for (uint32_t l = small; l-- > 0;) {
         on_level(s, KERNEL_INTERPOLATE, l, cells_of(s, l), 0);
-        relax(s, l, 0);
+        relax(s, l, 0, l > 0 || !last ? 2 : 1);
     }
 }
 
 // The second and further cycles of a correction: among walls the device leaves them out if the medium is thin.
-static void further_cycle(solve *s)
+static void further_cycle(solve *s, bool last)
 {
     s->launch = s->walls[0] ? INDIRECT : DIRECT;
     s->num_launches = 0;
-    v_cycle(s, false);
+    v_cycle(s, false, last);
     s->launch = DIRECT;
 }
 
 static void list_further_cycle(solve *s)
 {
     s->launch = LISTED;
-    v_cycle(s, false);
+    v_cycle(s, false, false);
     s->launch = DIRECT;
     tyn_rec_update(s->r, LATTICE_PORT_LAUNCHES, 0, s->launches, sizeof s->launches);
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_DEPTH,
@@ -256,7 +256,7 @@ static void mix(solve *s, uint32_t index)
     s->args.anderson = p->anderson;
     uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
-    const uint32_t residual_spec[2] = {s->walls[0], spec[0]};
+    const uint32_t residual_spec[3] = {s->walls[0], spec[0], s->levels.repeat};
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
                               .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
@@ -265,7 +265,8 @@ static void mix(solve *s, uint32_t index)
                               .ports = (const uint8_t[]){
                                   LATTICE_PORT_STATE, LATTICE_PORT_SWEPT, LATTICE_PORT_CORRECTION,
                                   change[1], change[2], result[0], change[0], LATTICE_PORT_PARTIALS,
-                                  LATTICE_PORT_WALL_CELLS}});
+                                  LATTICE_PORT_WALL_CELLS, LATTICE_PORT_STENCIL_LO,
+                                  LATTICE_PORT_STENCIL_HI, LATTICE_PORT_RHS}});
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
                                            .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
                                            .args = &s->args,
@@ -304,7 +305,7 @@ static void record(tyn_recorder *r, const void *params)
     s.walls[0] = tyn_rec_has(r, LATTICE_PORT_WALL_LINKS);
     s.walls[1] = tyn_rec_has(r, LATTICE_PORT_WALL_LIGHT);
     s.args.elements = num_elements(dims, s.walls[0]);
-    s.args.corrected = p->cycles > 0;
+    s.args.corrected = p->cycles == 0 ? 0 : s.levels.first_small == 0 ? 1 : 2;
     const uint32_t *repeat = p->shape.repeat;
     const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
@@ -332,10 +333,11 @@ static void record(tyn_recorder *r, const void *params)
                      .args = &s.args, .spec = sweep_spec);
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
+            const bool last = c + 1 == p->cycles;
             if (c == 0) {
-                v_cycle(&s, true);
+                v_cycle(&s, true, last);
             } else {
-                further_cycle(&s);
+                further_cycle(&s, last);
             }
         }
         mix(&s, i);

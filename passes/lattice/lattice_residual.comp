@@ -6,7 +6,14 @@
 // radiance whose first moments these are); of the last sweep also r.r and that of the result itself. A first sweep's r
 // is the whole solution: what the diffusion correction added stands for it. Each thread adds its cells in order, each workgroup its
 // threads pairwise.
+//
+// The last half relaxation of the correction is done here, where it is read: nothing else needs it.
 #include "shaders/lattice/lattice_args.h"
+#include "shaders/common/quotient.glsl"
+#include "lattice_levels.glsl"
+#define LATTICE_STENCIL_LO 9
+#define LATTICE_STENCIL_HI 10
+#include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = LATTICE_GROUP) in;
 TYN_ARGS(lattice_args args);
@@ -23,9 +30,32 @@ TYN_WRITE(7, partials, float partials[]); // [channel][workgroup][dot]
 #include "lattice_wall_state.glsl"
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint last = 0; // 1: of the last sweep, with the two norms
+layout(binding = 11) uniform samplerBuffer rhs_words;
 const uint num_dots = last == 1 ? LATTICE_NUM_DOTS : LATTICE_MIX_DOTS;
 
 shared float sums[LATTICE_NUM_DOTS][LATTICE_GROUP];
+
+float correction_at(uint i)
+{
+    return texelFetch(correction_words, int(i)).x;
+}
+
+#define LATTICE_REPEAT 2
+#include "lattice_inflow.glsl"
+
+float corrected(uint ch, uint cell)
+{
+    uint i = ch * args.stride + cell;
+    float e = correction_at(i);
+    if (args.corrected == 2) {
+        ivec3 c = quotient_place(cell, ivec3(args.dims));
+        if ((c.x + c.y + c.z & 1) == 1) {
+            lattice_stencil k = lattice_stencil_at(i);
+            e = lattice_inflow(texelFetch(rhs_words, int(i)).x, lattice_level(ivec3(args.dims), 0), c, i, k) / k.diagonal;
+        }
+    }
+    return e;
+}
 
 float norm_dot(vec4 a, vec4 b)
 {
@@ -47,7 +77,7 @@ vec4 corrected_walls(uint quad, uint ch, vec4 radiance, vec4 change)
         vec4 surface = lattice_wall_surface(min(cell, lattice_all_cells() - 1u));
         if (cell < lattice_all_cells() && surface.a > 0.0) {
             float albedo = surface[ch];
-            float e = texelFetch(correction_words, int(ch * args.stride + cell)).x;
+            float e = corrected(ch, cell);
             radiance[k] += albedo * (e * 0.15915494 - change[k]) / (1.0 + albedo);
         }
     }
@@ -68,16 +98,16 @@ void main()
         vec4 m = plain;
         vec4 old = texelFetch(state_texels, int(i));
         if (!wall) {
-            m.x += texelFetch(correction_words, int(ch * args.stride + c)).x;
+            m.x += corrected(ch, c);
         }
-        if (wall && args.corrected == 1) {
+        if (wall && args.corrected > 0) {
             m = corrected_walls(c - cells, ch, m, m - old);
         }
         vec4 r = m - old;
         result[i] = m;
         change[i] = r;
         if (last == 1) {
-            const vec4 left = args.history == 0 && args.corrected == 1 ? m - plain : r;
+            const vec4 left = args.history == 0 && args.corrected > 0 ? m - plain : r;
             dots[5] += wall ? norm_dot_walls(left, left) : norm_dot(left, left);
             dots[6] += wall ? norm_dot_walls(m, m) : norm_dot(m, m);
         }

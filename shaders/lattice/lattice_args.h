@@ -61,7 +61,7 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uint guess;    // start: 1 = from the guess
     // Vectors of the state per channel: cells, then the radiance of their walls by fours.
     tyn_uint elements;
-    tyn_uint corrected; // residual: 1 = there is a diffusion correction
+    tyn_uint corrected; // collect, residual: 1 = there is a diffusion correction, 2 = its cells of colour 1 are still to be relaxed
     tyn_uvec3 repeat;   // sweep: periodic axes
     tyn_uint march;     // sweep: axis from whose planes diagonal lines start; not a periodic one
 };
