@@ -114,7 +114,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
         tyn_build_buffer(b, LATTICE_PORT_CHANGE_0 + i, 4 * scalar * elements);
     }
     tyn_build_buffer(b, LATTICE_PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
-    tyn_build_buffer(b, LATTICE_PORT_WEIGHTS, 2 * scalar);
+    tyn_build_buffer(b, LATTICE_PORT_WEIGHTS,
+                     sizeof(float) * 2 * LATTICE_MAX_CHANNELS + sizeof(uint32_t));
     tyn_build_buffer(b, LATTICE_PORT_LAUNCHES, sizeof(uint32_t) * 3 * LATTICE_MAX_LAUNCHES);
     tyn_build_buffer(b, LATTICE_PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_WALL_POWER, walls ? 2 * scalar * n : scalar);
@@ -266,11 +267,8 @@ static void mix(solve *s, uint32_t index)
                                   LATTICE_PORT_STATE, LATTICE_PORT_SWEPT, LATTICE_PORT_CORRECTION,
                                   change[1], change[2], result[0], change[0], LATTICE_PORT_PARTIALS,
                                   LATTICE_PORT_WALL_CELLS, LATTICE_PORT_STENCIL_LO,
-                                  LATTICE_PORT_STENCIL_HI, LATTICE_PORT_RHS}});
-    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
-                                           .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
-                                           .args = &s->args,
-                                           .spec = spec});
+                                  LATTICE_PORT_STENCIL_HI, LATTICE_PORT_RHS,
+                                  LATTICE_PORT_WEIGHTS, LATTICE_PORT_COUNTERS}});
     tyn_rec_dispatch(
         s->r,
         &(tyn_dispatch){.kernel = KERNEL_MIX,
@@ -310,6 +308,7 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
     s.args.march = !repeat[2] ? 2 : !repeat[1] ? 1 : 0;
+    tyn_rec_fill(r, LATTICE_PORT_WEIGHTS, 0);
     on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
         on_level(&s, KERNEL_STENCIL, 0, cells_of(&s, 0), 0);

@@ -58,7 +58,7 @@ typedef struct tyn_lattice_params {
     X(LATTICE, CHANGE_1, change_1, SCRATCH, BUFFER, "what a sweep changed"), \
     X(LATTICE, CHANGE_2, change_2, SCRATCH, BUFFER, "what a sweep changed"), \
     X(LATTICE, PARTIALS, partials, SCRATCH, BUFFER, "dot products by workgroup"), \
-    X(LATTICE, WEIGHTS, weights, SCRATCH, BUFFER, "shares of earlier sweeps"), \
+    X(LATTICE, WEIGHTS, weights, SCRATCH, BUFFER, "shares of earlier sweeps; workgroups that have added up theirs"), \
     X(LATTICE, ARRIVED, arrived, SCRATCH, BUFFER, "radiance that arrives at walls by direction"), \
     X(LATTICE, LAUNCHES, launches, SCRATCH, BUFFER, "workgroups of the dispatches of a further cycle")
 // clang-format on

@@ -56,8 +56,8 @@ struct lattice_args { // kernels on the whole lattice
     float dx;          // m
     tyn_uint lines;    // sweep: threads per direction and channel
     tyn_uint stride;   // cells of all levels of the diffusion grid
-    tyn_uint history;  // residual, weights, mix: earlier sweeps that there are, 0..2
-    tyn_uint anderson; // weights: 1 = they are mixed in
+    tyn_uint history;  // residual, mix: earlier sweeps that there are, 0..2
+    tyn_uint anderson; // residual: 1 = they are mixed in
     tyn_uint guess;    // start: 1 = from the guess
     // Vectors of the state per channel: cells, then the radiance of their walls by fours.
     tyn_uint elements;
@@ -79,6 +79,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 };
 
 #define LATTICE_DIRECTIONS 14
+#define LATTICE_MAX_CHANNELS 3
 #define LATTICE_SWEEP_GROUP 64                   // threads of a workgroup: lines
 #define LATTICE_GROUP 64                         // ... of kernels that reduce
 #define LATTICE_GROUP_CELLS (16 * LATTICE_GROUP) // that it reduces
