@@ -196,14 +196,21 @@ static tyn_extent cells_of(const solve *s, uint32_t level)
     return (tyn_extent){e.x, e.y, e.z * s->params->shape.channels};
 }
 
-// Of colours `first` to before `end`.
-static void relax(solve *s, uint32_t level, uint32_t first, uint32_t end)
+static void relax(solve *s, uint32_t level, uint32_t colour)
 {
     tyn_extent threads = cells_of(s, level);
     threads.x = (threads.x + 1) / 2;
-    for (uint32_t colour = first; colour < end; colour++) {
-        on_level(s, KERNEL_RELAX, level, threads, colour);
-    }
+    on_level(s, KERNEL_RELAX, level, threads, colour);
+}
+
+// Threads of a kernel with a workgroup for each block of cells.
+static tyn_extent blocks_of(const solve *s, uint32_t level)
+{
+    const tyn_extent e = s->levels.size[level];
+    const uint32_t last = LATTICE_TILE - 1;
+    return (tyn_extent){(e.x + last) / LATTICE_TILE * LATTICE_TILE_GROUP,
+                        (e.y + last) / LATTICE_TILE,
+                        (e.z + last) / LATTICE_TILE * s->params->shape.channels};
 }
 
 // V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
@@ -212,15 +219,19 @@ static void v_cycle(solve *s, bool fresh, bool last)
 {
     const uint32_t small = s->levels.first_small;
     for (uint32_t l = 0; l < small; l++) {
-        relax(s, l, l > 0 || fresh, 2);
-        on_level(s, KERNEL_RESTRICT, l + 1, cells_of(s, l + 1), 0);
+        if (l == 0 && !fresh) {
+            relax(s, l, 0);
+        }
+        on_level(s, KERNEL_RESTRICT, l + 1, blocks_of(s, l), 0);
     }
     on_level(s, KERNEL_COARSE, small,
              (tyn_extent){LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1},
              small > 0 || fresh);
     for (uint32_t l = small; l-- > 0;) {
-        on_level(s, KERNEL_INTERPOLATE, l, cells_of(s, l), 0);
-        relax(s, l, 0, l > 0 || !last ? 2 : 1);
+        on_level(s, KERNEL_INTERPOLATE, l, blocks_of(s, l), 0);
+        if (l > 0 || !last) {
+            relax(s, l, 1);
+        }
     }
 }
 
@@ -267,8 +278,8 @@ static void mix(solve *s, uint32_t index)
                                   LATTICE_PORT_STATE, LATTICE_PORT_SWEPT, LATTICE_PORT_CORRECTION,
                                   change[1], change[2], result[0], change[0], LATTICE_PORT_PARTIALS,
                                   LATTICE_PORT_WALL_CELLS, LATTICE_PORT_STENCIL_LO,
-                                  LATTICE_PORT_STENCIL_HI, LATTICE_PORT_RHS,
-                                  LATTICE_PORT_WEIGHTS, LATTICE_PORT_COUNTERS}});
+                                  LATTICE_PORT_STENCIL_HI, LATTICE_PORT_RHS, LATTICE_PORT_WEIGHTS,
+                                  LATTICE_PORT_COUNTERS}});
     tyn_rec_dispatch(
         s->r,
         &(tyn_dispatch){.kernel = KERNEL_MIX,

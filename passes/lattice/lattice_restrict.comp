@@ -1,5 +1,5 @@
-// lattice_restrict.comp -- right hand side of a level: the residual of the next finer one, summed. And the first half
-// of its first relaxation, from corrections of 0.
+// lattice_restrict.comp -- relaxes colour 1 of a level. Then its residual, summed, is the right hand side of the next coarser one.
+// And the first half of that one's first relaxation, from corrections of 0.
 //
 // Cells of the finer level whose indices have an odd sum were relaxed last: their residual is 0.
 #extension GL_EXT_control_flow_attributes : require
@@ -10,7 +10,6 @@
 #define LATTICE_STENCIL_HI 1
 #include "lattice_stencil_texels.glsl"
 
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_ARGS(lattice_level_args args); // level: the coarse one
 layout(binding = 2) uniform samplerBuffer rhs_words; // the buffers below, at another level
 layout(binding = 3) uniform samplerBuffer correction_words;
@@ -25,17 +24,28 @@ float correction_at(uint i)
 #define LATTICE_REPEAT 1
 #include "lattice_inflow.glsl"
 
+#include "lattice_tile.glsl"
+
+float tile_correction(lattice_level level, ivec3 c, uint i, bool own)
+{
+    lattice_stencil k = lattice_stencil_at(i);
+    float e = lattice_inflow(texelFetch(rhs_words, int(i)).x, level, c, i, k) / k.diagonal;
+    if (own) {
+        correction[i] = e;
+    }
+    return e;
+}
+
 void main()
 {
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level);
     lattice_level fine = lattice_level_of(ivec3(args.dims), args.level - 1);
-    ivec3 c = ivec3(gl_GlobalInvocationID);
-    int ch = quotient(c.z, coarse.size.z);
-    c.z -= ch * coarse.size.z;
-    if (any(greaterThanEqual(c.xy, coarse.size.xy)) || ch >= int(args.channels)) {
+    lattice_block block = lattice_block_of(fine);
+    fill_tile(fine, block);
+    ivec3 c = block.begin / 2 + quotient_place(gl_LocalInvocationIndex, ivec3(TILE / 2));
+    if (gl_LocalInvocationIndex >= TILE * TILE * TILE / 8 || any(greaterThanEqual(c, coarse.size))) {
         return;
     }
-    uint channel = uint(ch) * args.stride;
     float sum = 0.0;
     const int even[4] = int[](0, 3, 5, 6);
     [[unroll]] for (int n = 0; n < 4; n++) {
@@ -44,15 +54,15 @@ void main()
         if (any(greaterThanEqual(f, fine.size))) {
             continue;
         }
-        uint i = channel + lattice_index(fine, f);
+        uint i = block.channel + lattice_index(fine, f);
         vec4 hi = lattice_stencil_hi_at(i);
         lattice_stencil k = lattice_stencil_of(lattice_stencil_lo_at(i), hi);
         if (lattice_orphan(hi)) {
             continue;
         }
-        sum = lattice_inflow(sum + texelFetch(rhs_words, int(i)).x - k.diagonal * correction_at(i), fine, f, i, k);
+        sum = tile_inflow(sum + texelFetch(rhs_words, int(i)).x - k.diagonal * correction_at(i), tile_index(block, f), k);
     }
-    uint i = channel + lattice_index(coarse, c);
+    uint i = block.channel + lattice_index(coarse, c);
     rhs[i] = sum;
     correction[i] = (c.x + c.y + c.z & 1) == 0 ? sum / abs(lattice_stencil_hi_at(i).w) : 0.0;
 }
