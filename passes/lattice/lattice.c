@@ -132,6 +132,7 @@ typedef struct solve { // what recording needs to know
     levels levels;
     tyn_extent texels; // of the lattice with its channels
     uint32_t walls[2]; // there are walls; they shine
+    bool relax_late;   // the residual relaxes colour 1 of the last cycle
     struct lattice_args args;
     // Launches of a cycle that the device may leave out:
     enum { DIRECT, LISTED, INDIRECT } launch;
@@ -203,18 +204,20 @@ static void relax(solve *s, uint32_t level, uint32_t colour)
     on_level(s, KERNEL_RELAX, level, threads, colour);
 }
 
-// Threads of a kernel with a workgroup for each block of cells.
-static tyn_extent blocks_of(const solve *s, uint32_t level)
+// A workgroup for each block of cells of level `fine`.
+static void on_blocks(solve *s, uint32_t kernel, uint32_t level, uint32_t fine)
 {
-    const tyn_extent e = s->levels.size[level];
+    const tyn_extent e = s->levels.size[fine];
     const uint32_t last = LATTICE_TILE - 1;
-    return (tyn_extent){(e.x + last) / LATTICE_TILE * LATTICE_TILE_GROUP,
-                        (e.y + last) / LATTICE_TILE,
-                        (e.z + last) / LATTICE_TILE * s->params->shape.channels};
+    on_level(s, kernel, level,
+             (tyn_extent){(e.x + last) / LATTICE_TILE * kernels[kernel].local_size[0],
+                          (e.y + last) / LATTICE_TILE,
+                          (e.z + last) / LATTICE_TILE * s->params->shape.channels},
+             0);
 }
 
 // V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
-// them has relaxed colour 0. Of the last cycle colour 1 is left to the residual.
+// them has relaxed colour 0. Of the last cycle colour 1 may be left to the residual.
 static void v_cycle(solve *s, bool fresh, bool last)
 {
     const uint32_t small = s->levels.first_small;
@@ -222,13 +225,13 @@ static void v_cycle(solve *s, bool fresh, bool last)
         if (l == 0 && !fresh) {
             relax(s, l, 0);
         }
-        on_level(s, KERNEL_RESTRICT, l + 1, blocks_of(s, l), 0);
+        on_blocks(s, KERNEL_RESTRICT, l + 1, l);
     }
     on_level(s, KERNEL_COARSE, small,
              (tyn_extent){LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1},
              small > 0 || fresh);
     for (uint32_t l = small; l-- > 0;) {
-        on_level(s, KERNEL_INTERPOLATE, l, blocks_of(s, l), 0);
+        on_blocks(s, KERNEL_INTERPOLATE, l, l);
         if (l > 0 || !last) {
             relax(s, l, 1);
         }
@@ -268,7 +271,7 @@ static void mix(solve *s, uint32_t index)
     s->args.anderson = p->anderson;
     uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
-    const uint32_t residual_spec[3] = {s->walls[0], spec[0], s->levels.repeat};
+    const uint32_t residual_spec[4] = {s->walls[0], spec[0], s->levels.repeat, s->relax_late};
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
                               .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
@@ -314,7 +317,9 @@ static void record(tyn_recorder *r, const void *params)
     s.walls[0] = tyn_rec_has(r, LATTICE_PORT_WALL_LINKS);
     s.walls[1] = tyn_rec_has(r, LATTICE_PORT_WALL_LIGHT);
     s.args.elements = num_elements(dims, s.walls[0]);
-    s.args.corrected = p->cycles == 0 ? 0 : s.levels.first_small == 0 ? 1 : 2;
+    s.args.corrected = p->cycles > 0;
+    // Among walls the residual reads corrections more than once.
+    s.relax_late = p->cycles > 0 && !s.walls[0] && s.levels.first_small > 0;
     const uint32_t *repeat = p->shape.repeat;
     const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
@@ -343,7 +348,7 @@ static void record(tyn_recorder *r, const void *params)
                      .args = &s.args, .spec = sweep_spec);
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
-            const bool last = c + 1 == p->cycles;
+            const bool last = c + 1 == p->cycles && s.relax_late;
             if (c == 0) {
                 v_cycle(&s, true, last);
             } else {

@@ -92,7 +92,7 @@ void main()
     rhs[l] = change;
     // The first half of the first relaxation, from corrections of 0.
     float corrected = 0.0;
-    if (args.corrected > 0 && ((texel.x + texel.y + texel.z - ch * args.dims.z) & 1) == 0) {
+    if (args.corrected == 1 && ((texel.x + texel.y + texel.z - ch * args.dims.z) & 1) == 0) {
         corrected = change / abs(texelFetch(stencil_hi_words, int(4u * l + 3u)).x);
     }
     correction[l] = corrected;

@@ -22,6 +22,7 @@ float correction_at(uint i)
 
 #define LATTICE_REPEAT 1
 #include "lattice_inflow.glsl"
+#define TILE_GROUP 256 // a cell of colour 0 each
 #include "lattice_tile.glsl"
 
 float tile_correction(lattice_level fine, ivec3 c, uint i, bool own)

@@ -7,7 +7,8 @@
 // is the whole solution: what the diffusion correction added stands for it. Each thread adds its cells in order, each workgroup its
 // threads pairwise; the workgroup that comes last adds their sums and finds the shares.
 //
-// The last half relaxation of the correction is done here, where it is read: nothing else needs it.
+// The last half relaxation of the correction is done here, where it is read: nothing else needs it. Among walls corrections are
+// read more than once; there it has been done.
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/counters.h"
 #include "shaders/common/quotient.glsl"
@@ -34,6 +35,7 @@ layout(binding = 7, scalar) coherent buffer partials_buffer
 #include "lattice_wall_state.glsl"
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint last = 0; // 1: of the last sweep, with the two norms
+layout(constant_id = 3) const uint relax_late = 0; // 1: colour 1 of the correction is still to be relaxed
 layout(binding = 11) uniform samplerBuffer rhs_words;
 TYN_UPDATE(12, weights, vec2 weights[LATTICE_MAX_CHANNELS]; uint num_done); // workgroups
 TYN_UPDATE(13, counters, counters_block counters);
@@ -55,7 +57,7 @@ float corrected(uint ch, uint cell)
 {
     uint i = ch * args.stride + cell;
     float e = correction_at(i);
-    if (args.corrected == 2) {
+    if (relax_late == 1) {
         ivec3 c = quotient_place(cell, ivec3(args.dims));
         if ((c.x + c.y + c.z & 1) == 1) {
             lattice_stencil k = lattice_stencil_at(i);
@@ -178,14 +180,14 @@ void main()
         if (!wall) {
             m.x += corrected(ch, c);
         }
-        if (wall && args.corrected > 0) {
+        if (wall && args.corrected == 1) {
             m = corrected_walls(c - cells, ch, m, m - old);
         }
         vec4 r = m - old;
         result[i] = m;
         change[i] = r;
         if (last == 1) {
-            const vec4 left = args.history == 0 && args.corrected > 0 ? m - plain : r;
+            const vec4 left = args.history == 0 && args.corrected == 1 ? m - plain : r;
             dots[5] += wall ? norm_dot_walls(left, left) : norm_dot(left, left);
             dots[6] += wall ? norm_dot_walls(m, m) : norm_dot(m, m);
         }

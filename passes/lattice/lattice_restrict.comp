@@ -24,6 +24,7 @@ float correction_at(uint i)
 #define LATTICE_REPEAT 1
 #include "lattice_inflow.glsl"
 
+#define TILE_GROUP 64 // a coarse cell each
 #include "lattice_tile.glsl"
 
 float tile_correction(lattice_level level, ivec3 c, uint i, bool own)
@@ -43,7 +44,7 @@ void main()
     lattice_block block = lattice_block_of(fine);
     fill_tile(fine, block);
     ivec3 c = block.begin / 2 + quotient_place(gl_LocalInvocationIndex, ivec3(TILE / 2));
-    if (gl_LocalInvocationIndex >= TILE * TILE * TILE / 8 || any(greaterThanEqual(c, coarse.size))) {
+    if (any(greaterThanEqual(c, coarse.size))) {
         return;
     }
     float sum = 0.0;

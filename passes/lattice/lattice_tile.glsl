@@ -1,12 +1,12 @@
 // lattice_tile.glsl -- corrections of colour 1 of a block of cells and of the cells beside it, in shared memory: cells of colour 0
 // need no others. A workgroup does two half steps at once so, without another's.
 //
-// Before including: lattice_inflow.glsl, quotient.glsl and the push constants args.
+// Before including: lattice_inflow.glsl, quotient.glsl, the push constants args and TILE_GROUP, the threads of a workgroup.
 
 const int TILE = LATTICE_TILE, WIDE = TILE + 2;
 shared float tile[WIDE * WIDE * WIDE]; // from the cell before the block on, along each axis
 
-layout(local_size_x = LATTICE_TILE_GROUP) in; // workgroups: blocks; channels stacked along z
+layout(local_size_x = TILE_GROUP) in; // workgroups: blocks; channels stacked along z
 
 struct lattice_block {
     ivec3 begin;  // its first cell
@@ -32,7 +32,7 @@ float tile_correction(lattice_level level, ivec3 c, uint i, bool own);
 
 void fill_tile(lattice_level level, lattice_block block)
 {
-    for (uint n = gl_LocalInvocationIndex; n < WIDE * WIDE * WIDE / 2; n += LATTICE_TILE_GROUP) {
+    for (uint n = gl_LocalInvocationIndex; n < WIDE * WIDE * WIDE / 2; n += TILE_GROUP) {
         ivec3 t = quotient_place(n, ivec3(WIDE / 2, WIDE, WIDE));
         t.x = 2 * t.x + (t.y + t.z & 1);
         ivec3 outside = ivec3(equal(t, ivec3(0))) + ivec3(equal(t, ivec3(WIDE - 1)));

@@ -61,7 +61,7 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uint guess;    // start: 1 = from the guess
     // Vectors of the state per channel: cells, then the radiance of their walls by fours.
     tyn_uint elements;
-    tyn_uint corrected; // collect, residual: 1 = there is a diffusion correction, 2 = its cells of colour 1 are still to be relaxed
+    tyn_uint corrected; // collect, residual: 1 = there is a diffusion correction
     tyn_uvec3 repeat;   // sweep: periodic axes
     tyn_uint march;     // sweep: axis from whose planes diagonal lines start; not a periodic one
 };
@@ -86,7 +86,6 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_MIX_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_NUM_DOTS 7                       // ... and of the last sweep
 #define LATTICE_TILE 8            // edge of the blocks of cells in which two colours are relaxed at once; even
-#define LATTICE_TILE_GROUP 256    // half its cells
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_FEW 2048   // ... with 16 KiB of shared memory: exactly as much
 #define LATTICE_COARSE_GROUP 256
