@@ -111,11 +111,13 @@ void tyn_barrier_widen(tyn_barrier *all)
 
 void tyn_track_barrier(tyn_track *t, const tyn_barrier *all)
 {
-    if (t->read_stages && covers(all->src_stages, t->read_stages)) {
+    const bool waits = all->src_stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    const bool flushes = all->src_access & VK_ACCESS_2_MEMORY_WRITE_BIT;
+    if (t->read_stages && (waits || covers(all->src_stages, t->read_stages))) {
         t->after_reads |= all->dst_stages;
     }
-    if (t->write_stages && covers(all->src_stages, t->write_stages) &&
-        covers(all->src_access, t->write_access) && all->dst_access) {
+    if (t->write_stages && (waits || covers(all->src_stages, t->write_stages)) &&
+        (flushes || covers(all->src_access, t->write_access)) && all->dst_access) {
         make_visible(t, all->dst_stages, all->dst_access);
     }
 }

@@ -46,7 +46,7 @@ tyn_access tyn_access_join(tyn_access a, tyn_access b);
 // Advances the track over the access. True if `out` must come first.
 bool tyn_plan(tyn_track *track, tyn_access access, tyn_barrier *out);
 
-// Joins `b`, which transitions nothing, to a barrier for all memory; {0}: to none yet.
+// Joins `b`, without its transition, to a barrier for all memory; {0}: to none yet.
 void tyn_barrier_join(tyn_barrier *all, const tyn_barrier *b);
 
 // Lets a barrier for all memory make visible to compute shaders what it makes visible to one kind of their accesses: it costs as

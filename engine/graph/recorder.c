@@ -132,7 +132,8 @@ static tyn_track *track_of(tyn_recorder *r, uint32_t index)
 }
 
 // One barrier for all memory in place of one for each touched resource, without transitions. It costs the same, and other
-// resources need none later. False: none is needed.
+// resources need none later. Where others lay before an image, it is for that, too: the image's own says nothing of their memory.
+// False: none is needed.
 static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count, tyn_barrier *all)
 {
     bool any = false;
@@ -140,7 +141,9 @@ static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count,
     for (uint32_t i = 0; i < count; i++) {
         tyn_track track = *track_of(r, touches[i].resource);
         tyn_barrier own;
-        if (tyn_plan(&track, touches[i].access, &own) && own.old_layout == own.new_layout) {
+        const bool needed = tyn_plan(&track, touches[i].access, &own);
+        if (needed && (own.old_layout == own.new_layout ||
+                       own.src_stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)) {
             tyn_barrier_join(all, &own);
             any = true;
         }
@@ -197,52 +200,25 @@ static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
                                     .pImageMemoryBarriers = images});
 }
 
-// One barrier for all memory: those of single images and buffers say nothing of others in the same place.
-static void put_memory_barrier(tyn_recorder *r, VkPipelineStageFlags2 stages, VkAccessFlags2 access)
-{
-    r->barriers++;
-    if (r->mode == RECORD_PLAN) {
-        char src[128], src_access[128], line[320];
-        tyn_print_stages(src, sizeof src, stages);
-        tyn_print_access(src_access, sizeof src_access, access);
-        snprintf(line, sizeof line, "    barrier of shared memory: %s %s -> ALL", src, src_access);
-        r->print(r->print_user, line);
-        return;
-    }
-    graph_memory_barrier(
-        r->g, r->cmd,
-        &(tyn_barrier){stages, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, access,
-                       VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
-}
-
 void recorder_enter(tyn_recorder *r)
 {
     const node *n = node_of(r);
-    VkPipelineStageFlags2 stages = 0;
-    VkAccessFlags2 access = 0;
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
         const uint32_t index = graph_port(n, p, DIR_MADE) - 1;
         if (index == UINT32_MAX || !r->g->phys[index].shared) {
             continue;
         }
-        tyn_track *own = track_of(r, index);
         VkPipelineStageFlags2 others = 0;
         for (uint32_t i = 0; i < r->g->num_resources; i++) {
             const tyn_track *t = track_of(r, i);
             if (i != index && graph_overlap(&r->g->phys[i], &r->g->phys[index])) {
                 others |= t->write_stages | t->read_stages;
-                access |= t->write_access;
             }
         }
-        if (others) { // what follows waits for the barrier, which waits for all of them
-            stages |= others | own->write_stages | own->read_stages;
-            access |= own->write_access;
-            *own = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                               .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
+        if (others) {
+            *track_of(r, index) = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                              .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
         }
-    }
-    if (stages) {
-        put_memory_barrier(r, stages, access);
     }
 }
 

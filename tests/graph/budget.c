@@ -226,6 +226,13 @@ static void memory_of_nodes(void **state)
     assert_int_equal(stats[2].shared_bytes, 0);
     char *dump = tyn_graph_dump(f->g, false, NULL);
     assert_non_null(strstr(dump, "memory  2.00 MiB, 1.00 MiB of it shared with other nodes"));
+    // What the second one makes lies where the first one's scratch was: its first access waits by a barrier for all memory,
+    // beside the image's own.
+    const char *second = strstr(dump, "node 1 ");
+    assert_non_null(second);
+    assert_non_null(strstr(second, "barrier memory: ALL MEMORY_WRITE -> COMPUTE "));
+    assert_non_null(strstr(second, "barrier out: ALL MEMORY_WRITE -> COMPUTE STORAGE_WRITE, "
+                                   "UNDEFINED -> GENERAL"));
     free(dump);
 }
 

@@ -244,8 +244,11 @@ typedef struct model {
     VkImageLayout layout;
 } model;
 
-static void apply_barrier(model *m, const tyn_barrier *b)
+static void apply_barrier(model *m, const tyn_barrier *barrier)
 {
+    tyn_barrier all = *barrier, *b = &all;
+    b->src_stages |= b->src_stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT ? UINT64_MAX : 0;
+    b->src_access |= b->src_access & VK_ACCESS_2_MEMORY_WRITE_BIT ? write_bits : 0;
     for (int i = 0; i < m->num; i++) {
         operation *op = &m->ops[i];
         if (!((op->stage | op->before) & b->src_stages)) {
@@ -342,6 +345,10 @@ static void pass_any(model *m, tyn_track *track, char *story)
                              .dst_stages = n->access.stages,
                              .dst_access = rand() % 3 ? n->access.access : 0};
     tyn_barrier_join(&all, &own);
+    if (rand() % 8 == 0) { // where others lay before a resource
+        all.src_stages |= VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        all.src_access |= rand() % 2 ? VK_ACCESS_2_MEMORY_WRITE_BIT : 0;
+    }
     if (rand() % 4) {
         tyn_barrier_widen(&all);
     }
