@@ -99,12 +99,17 @@ void tyn_barrier_join(tyn_barrier *all, const tyn_barrier *b)
 
 void tyn_barrier_widen(tyn_barrier *all)
 {
-    if (all->src_access && (all->dst_stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)) {
+    const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    if (all->dst_stages & compute) {
+        all->dst_stages |= VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    }
+    if (all->src_access && (all->dst_stages & compute)) {
         all->dst_access |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
                            VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-                           VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
+                           VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
+                           VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
     }
-    if (all->src_access && (all->src_stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT)) {
+    if (all->src_access && (all->src_stages & compute)) {
         all->src_access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
     }
 }

@@ -49,8 +49,8 @@ bool tyn_plan(tyn_track *track, tyn_access access, tyn_barrier *out);
 // Joins `b`, without its transition, to a barrier for all memory; {0}: to none yet.
 void tyn_barrier_join(tyn_barrier *all, const tyn_barrier *b);
 
-// Lets a barrier for all memory make visible to compute shaders what it makes visible to one kind of their accesses: it costs as
-// much, and those that come next need none.
+// Lets a barrier for all memory make visible to compute shaders, and to transfers, what it makes visible to one kind of accesses of
+// compute shaders: it costs as much, and those that come next need none.
 void tyn_barrier_widen(tyn_barrier *all);
 
 // Notes a barrier for all memory in a track: what it orders and makes visible needs no barrier of its own.
