@@ -197,6 +197,20 @@ static tyn_extent cells_of(const solve *s, uint32_t level)
     return (tyn_extent){e.x, e.y, e.z * s->params->shape.channels};
 }
 
+static void coarse_stencils(solve *s)
+{
+    for (uint32_t l = 1; l < s->levels.num; l++) {
+        if (s->walls[0]) { // first the fine cells that the coarse ones do not stand for
+            on_level_as(s, KERNEL_STENCIL_COARSE, l, cells_of(s, l), 0, 1);
+        }
+        on_level_as(s, KERNEL_STENCIL_COARSE, l, cells_of(s, l), 0, 2 * s->walls[0]);
+    }
+    if (s->walls[0]) {
+        on_level(s, KERNEL_STENCIL_WALLS, 0,
+                 (tyn_extent){s->levels.cells, s->params->shape.channels, 1}, 0);
+    }
+}
+
 static void relax(solve *s, uint32_t level, uint32_t colour)
 {
     tyn_extent threads = cells_of(s, level);
@@ -325,27 +339,20 @@ static void record(tyn_recorder *r, const void *params)
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
     s.args.march = !repeat[2] ? 2 : !repeat[1] ? 1 : 0;
     tyn_rec_fill(r, LATTICE_PORT_WEIGHTS, 0);
+    if (p->cycles > 1 && s.walls[0]) {
+        list_further_cycle(&s);
+    }
     on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
         on_level(&s, KERNEL_STENCIL, 0, cells_of(&s, 0), 0);
-        for (uint32_t l = 1; l < s.levels.num; l++) {
-            if (s.walls[0]) { // first the fine cells that the coarse ones do not stand for
-                on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 1);
-            }
-            on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 2 * s.walls[0]);
-        }
-    }
-    if (p->cycles > 0 && s.walls[0]) {
-        on_level(&s, KERNEL_STENCIL_WALLS, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
-                 0);
-    }
-    if (p->cycles > 1 && s.walls[0]) {
-        list_further_cycle(&s);
     }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         TYN_DISPATCH(r, .kernel = KERNEL_SWEEP,
                      .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
                      .args = &s.args, .spec = sweep_spec);
+        if (i == 0 && p->cycles > 0) { // beside the first sweep: no barrier is between them
+            coarse_stencils(&s);
+        }
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
             const bool last = c + 1 == p->cycles && s.relax_late;
