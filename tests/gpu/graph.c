@@ -157,7 +157,8 @@ static void dump(void **state)
     declare_chain(t, input, 2, 2);
     gpu_run(t);
     char *text = tyn_graph_dump(t->graph, false, NULL), *dot = tyn_graph_dump(t->graph, true, NULL);
-    assert_non_null(strstr(text, "barrier memory: COMPUTE STORAGE_WRITE -> COMPUTE|TRANSFER SAMPLED_READ"));
+    assert_non_null(
+        strstr(text, "barrier memory: COMPUTE STORAGE_WRITE -> COMPUTE|TRANSFER SAMPLED_READ"));
     assert_non_null(strstr(text, "culled: no output needs it"));
     assert_non_null(strstr(dot, "digraph"));
     free(text);
