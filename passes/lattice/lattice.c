@@ -132,6 +132,7 @@ typedef struct solve { // what recording needs to know
     levels levels;
     tyn_extent texels; // of the lattice with its channels
     uint32_t walls[2]; // there are walls; they shine
+    bool relax_late;   // the residual relaxes colour 1 of the last cycle
     struct lattice_args args;
     // Launches of a cycle that the device may leave out:
     enum { DIRECT, LISTED, INDIRECT } launch;
@@ -230,13 +231,12 @@ static void on_blocks(solve *s, uint32_t kernel, uint32_t level, uint32_t fine)
 }
 
 // V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
-// them has relaxed colour 0. Without walls the lattice itself is not relaxed between cycles, which brings next to nothing, and
-// after the last one the residual does it.
-static void v_cycle(solve *s, bool fresh)
+// them has relaxed colour 0. Of the last cycle colour 1 may be left to the residual.
+static void v_cycle(solve *s, bool fresh, bool last)
 {
     const uint32_t small = s->levels.first_small;
     for (uint32_t l = 0; l < small; l++) {
-        if (l == 0 && !fresh && s->walls[0]) {
+        if (l == 0 && !fresh) {
             relax(s, l, 0);
         }
         on_blocks(s, KERNEL_RESTRICT, l + 1, l);
@@ -246,25 +246,25 @@ static void v_cycle(solve *s, bool fresh)
              small > 0 || fresh);
     for (uint32_t l = small; l-- > 0;) {
         on_blocks(s, KERNEL_INTERPOLATE, l, l);
-        if (l > 0 || s->walls[0]) {
+        if (l > 0 || !last) {
             relax(s, l, 1);
         }
     }
 }
 
 // The second and further cycles of a correction: among walls the device leaves them out if the medium is thin.
-static void further_cycle(solve *s)
+static void further_cycle(solve *s, bool last)
 {
     s->launch = s->walls[0] ? INDIRECT : DIRECT;
     s->num_launches = 0;
-    v_cycle(s, false);
+    v_cycle(s, false, last);
     s->launch = DIRECT;
 }
 
 static void list_further_cycle(solve *s)
 {
     s->launch = LISTED;
-    v_cycle(s, false);
+    v_cycle(s, false, false);
     s->launch = DIRECT;
     tyn_rec_update(s->r, LATTICE_PORT_LAUNCHES, 0, s->launches, sizeof s->launches);
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_DEPTH,
@@ -285,9 +285,7 @@ static void mix(solve *s, uint32_t index)
     s->args.anderson = p->anderson;
     uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
-    // Among walls the residual reads corrections more than once: there colour 1 has been relaxed.
-    const uint32_t relax_late = p->cycles > 0 && !s->walls[0] && s->levels.first_small > 0;
-    const uint32_t residual_spec[4] = {s->walls[0], spec[0], s->levels.repeat, relax_late};
+    const uint32_t residual_spec[4] = {s->walls[0], spec[0], s->levels.repeat, s->relax_late};
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
                               .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
@@ -334,6 +332,8 @@ static void record(tyn_recorder *r, const void *params)
     s.walls[1] = tyn_rec_has(r, LATTICE_PORT_WALL_LIGHT);
     s.args.elements = num_elements(dims, s.walls[0]);
     s.args.corrected = p->cycles > 0;
+    // Among walls the residual reads corrections more than once.
+    s.relax_late = p->cycles > 0 && !s.walls[0] && s.levels.first_small > 0;
     const uint32_t *repeat = p->shape.repeat;
     const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
     memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
@@ -355,10 +355,11 @@ static void record(tyn_recorder *r, const void *params)
         }
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
+            const bool last = c + 1 == p->cycles && s.relax_late;
             if (c == 0) {
-                v_cycle(&s, true);
+                v_cycle(&s, true, last);
             } else {
-                further_cycle(&s);
+                further_cycle(&s, last);
             }
         }
         mix(&s, i);

@@ -123,10 +123,9 @@ static double residual(const level *l, const int c[3], int id)
     return r;
 }
 
-// Of colours `first` to before `end`.
-static void relax(level *l, double omega, int first, int end)
+static void relax(level *l, double omega)
 {
-    for (int colour = first; colour < end; colour++) {
+    for (int colour = 0; colour < 2; colour++) {
         FOR_CELLS(l, c, id)
         {
             if ((c[0] + c[1] + c[2]) % 2 == colour) {
@@ -168,26 +167,25 @@ static void interpolate(level *f, const level *l)
     }
 }
 
-// Relaxes from colour `first` on before, and the colours before `end` after.
-static void cycle(level *l, int levels, int first, int end)
+static void cycle(level *l, int levels)
 {
     if (levels == 1) {
         for (int i = 0; i < COARSEST_SWEEPS; i++) {
-            relax(l, coarsest_omega, 0, 2);
+            relax(l, coarsest_omega);
         }
         return;
     }
     level *next = l + 1;
-    relax(l, 1, first, 2);
+    relax(l, 1);
     memset(next->x, 0, count(next) * sizeof(double));
     memset(next->b, 0, count(next) * sizeof(double));
     FOR_CELLS(l, c, id)
     {
         next->b[(c[2] / 2 * next->n[1] + c[1] / 2) * next->n[0] + c[0] / 2] += residual(l, c, id);
     }
-    cycle(next, levels - 1, 0, 2);
+    cycle(next, levels - 1);
     interpolate(l, next);
-    relax(l, 1, 0, end);
+    relax(l, 1);
 }
 
 void llc_twin_diffusion(const llc_twin *t, const double *b, int cycles, double *e)
@@ -204,10 +202,8 @@ void llc_twin_diffusion(const llc_twin *t, const double *b, int cycles, double *
         coarsen(&levels[num - 1], dx, &levels[num]);
     }
     memcpy(levels[0].b, b, count(&levels[0]) * sizeof(double));
-    // Between cycles each colour is relaxed once, where more than a workgroup of the device is at it.
-    const bool once = count(&levels[0]) > MOST_SCALED;
     for (int i = 0; i < cycles; i++) {
-        cycle(levels, num, once && i > 0 ? 1 : 0, once && i + 1 < cycles ? 1 : 2);
+        cycle(levels, num);
     }
     memcpy(e, levels[0].x, count(&levels[0]) * sizeof(double));
     for (int i = 0; i < num; i++) {
@@ -236,7 +232,7 @@ int llc_twin_diffusion_sor(const llc_twin *t, const double *b, double tolerance,
     double start = norm_of_residual(&l);
     while (sweeps < 100000 && norm_of_residual(&l) > tolerance * start) {
         for (int i = 0; i < 16; i++, sweeps++) {
-            relax(&l, omega, 0, 2);
+            relax(&l, omega);
         }
     }
     memcpy(e, l.x, count(&l) * sizeof(double));
