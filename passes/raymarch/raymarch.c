@@ -218,23 +218,20 @@ static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dis
     const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
     const struct raymarch_rest empty[2] = {none, none};
     tyn_rec_update(r, RAYMARCH_PORT_REST, 0, empty, sizeof empty);
-    args->spacing = features & (RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? 2 : RAYMARCH_NODES;
     args->lists[0] = 0;
     args->lists[1] = ((p->width + 1) / 2) * ((p->height + 1) / 2);
     args->rays = RAYMARCH_ALL_NODES;
-    rays.cells = grid_of(p, args->spacing);
+    rays.cells = grid_of(p, RAYMARCH_NODES);
     rays.label = "sparse rays";
     spec[2] = features | nodes;
     tyn_rec_dispatch(r, &rays);
-    if (args->spacing > 2) {
-        rays.label = "nodes that lie between";
-        spec[2] = features | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_COARSE;
-        tyn_rec_dispatch(r, &rays);
-        rays.label = "rays of the other nodes";
-        args->rays = RAYMARCH_LISTED_NODES;
-        spec[2] = features | nodes;
-        tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
-    }
+    rays.label = "nodes that lie between";
+    spec[2] = features | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_COARSE;
+    tyn_rec_dispatch(r, &rays);
+    rays.label = "rays of the other nodes";
+    args->rays = RAYMARCH_LISTED_NODES;
+    spec[2] = features | nodes;
+    tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
     rays.label = "pixels that lie between";
     rays.cells = grid_of(p, 2);
     spec[2] = features | RAYMARCH_SPARSE_FILL;

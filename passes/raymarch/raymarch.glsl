@@ -173,7 +173,7 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u, 0.0);
+    state.shadow = march_shadows(0u, 0u, 0u, 0.0);
     return state;
 }
 

@@ -57,8 +57,6 @@ typedef struct tyn_raymarch_params {
 // a part of the picture, at a multiple of RAYMARCH_NODES pixels, has the same nodes as the whole (raymarch_sparse.glsl).
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);
 
-enum { RAYMARCH_NODES = 4 }; // pixels from a node of the coarsest grid to the next
-
 enum {
     RAYMARCH_LAYER_TRANSMITTANCE = 1 << 0,
     RAYMARCH_LAYER_DEPTH = 1 << 1,

@@ -35,6 +35,8 @@
     (1u << 28)                    // rays of listed pixels; with SPARSE_NODES args.rays tells which
 #define RAYMARCH_NOISE (1u << 29) // places at which medium and light are looked up are moved
 
+#define RAYMARCH_NODES 4 // pixels from a node of the coarsest grid to the next
+
 // args.rays
 #define RAYMARCH_ALL_NODES 0
 #define RAYMARCH_LISTED_NODES 1
@@ -51,12 +53,11 @@ struct raymarch_args {
     tyn_vec3 tint;    // of the one channel of inscatter
     float reach;      // of lamps that are marched nearby only, m (radial_reach)
     tyn_uvec2 lists;  // where the lists in the buffer "rest" begin: of nodes, and of pixels
-    tyn_uint spacing; // of the nodes of the first grid, pixels: 2 or 4
     tyn_uint rays;    // sparse: RAYMARCH_ALL_NODES, ...
     float noise;      // by how much along an axis at most, m
     float noise_size; // of the largest features, m
 };
-TYN_ASSERT_SIZE(raymarch_args, 88);
+TYN_ASSERT_SIZE(raymarch_args, 84);
 
 // Start of the buffer "rest", twice: of nodes, and of pixels that need rays of their own. The lists follow: x | y << 16.
 struct raymarch_rest {

@@ -18,7 +18,8 @@ void store_node(march_target target, pixel_ray to, march_result r, march_state s
     if (state.steps > 0u) {
         atomicAdd(counters.steps, state.steps);
     }
-    imageStore(sparse_image, sparse_texel(target.node, SPARSE_RADIANCE), vec4(r.radiance, good ? 1.0 : -1.0));
+    float edges = float(min(state.shadow.edges, 255u)) / 1024.0;
+    imageStore(sparse_image, sparse_texel(target.node, SPARSE_RADIANCE), vec4(r.radiance, good ? 1.0 + edges : -1.0));
     imageStore(sparse_image, sparse_texel(target.node, SPARSE_TRANSMITTANCE), vec4(r.transmittance, sparse_nearness(to)));
     imageStore(sparse_image, sparse_texel(target.node, SPARSE_SCALED),
                vec4(r.scaled_transmittance, float(target.shapes_met)));
@@ -87,7 +88,7 @@ void march_rays(uint i, ivec2 at)
         if (raymarch_has(RAYMARCH_SPARSE_PIXELS)) {
             target.is_node = target.is_node && args.rays != RAYMARCH_LISTED_PIXELS;
         }
-        ivec2 place = int(args.spacing / 2u) * at;
+        ivec2 place = RAYMARCH_NODES / 2 * at;
         is = in_window(sparse_pixel(place));
         if (args.rays != RAYMARCH_ALL_NODES) {
             is = listed_place(target.is_node ? 0 : 1, i, place);

@@ -17,7 +17,9 @@ const float SPARSE_TOLERANCE_FIRST = 0.018, SPARSE_TOLERANCE = 0.04;
 const float SPARSE_DISTANCE_TOLERANCE = 0.03;
 
 // What is kept of the ray of a node: four texels. Nodes are counted from args.first on, two pixels apart.
-const int SPARSE_RADIANCE = 0;   // radiance; a = -1 if one ray cannot stand for the pixel, 2 if its coarse cell is interpolated
+// SPARSE_RADIANCE.a: -1 if one ray cannot stand for the pixel, 2 if its coarse cell is interpolated, else 1 and a 1024th for each
+// edge of a shadow that the ray crosses.
+const int SPARSE_RADIANCE = 0;
 const int SPARSE_TRANSMITTANCE = 1; // transmittance; a = 1 / distance of the surface, or 0
 const int SPARSE_SCALED = 2;         // e^-tau'; a = which shapes are met (rays_of_pixel)
 const int SPARSE_SINGLE = 3;         // light that has scattered once, where a layer wants it
@@ -241,6 +243,20 @@ bool listed_place(int which, uint i, out ivec2 place)
     return is;
 }
 
+// Do all rays of a coarse cell and of those around it cross as many edges of shadows? A shaft may be seen between nodes otherwise.
+bool sparse_edges_agree(ivec2 node)
+{
+    float first = sparse_load(node, SPARSE_RADIANCE).a;
+    bool agree = true;
+    for (int i = 0; i < 16 && agree; i++) {
+        ivec2 at = node + 2 * (ivec2(i % 4, i / 4) - 1);
+        bool there = all(greaterThanEqual(at, ivec2(0))) && in_window(sparse_pixel(at));
+        float other = sparse_load(there ? at : node, SPARSE_RADIANCE).a;
+        agree = other < 0.0 || other == first;
+    }
+    return agree;
+}
+
 // Of a coarse cell, 4x4 pixels: interpolates or lists the nodes in it that the finer grid has.
 void fill_nodes(ivec2 node)
 {
@@ -249,6 +265,9 @@ void fill_nodes(ivec2 node)
     float error;
     sparse_interpolate(cell, middle, error);
     bool smooth_cell = cell.known && error <= SPARSE_TOLERANCE_FIRST && !sees_sun(cell);
+    if (raymarch_has(RAYMARCH_SHADOWS)) {
+        smooth_cell = smooth_cell && sparse_edges_agree(node);
+    }
     for (int i = 1; i < 16 && smooth_cell; i++) {
         ivec2 pixel = sparse_pixel(node) + ivec2(i % 4, i / 4);
         smooth_cell = is_between(cell, pixel, first_surface(pixel, false));
@@ -296,10 +315,10 @@ void fill_pixels(ivec2 node)
     float error;
     sparse_interpolate(cell, middle, error);
     const ivec2 coarse_middle = node | 1; // of its coarse cell, which ends the window or has been filled
-    bool smooth_cell = args.spacing > 2u && in_window(sparse_pixel(coarse_middle)) && sparse_load(coarse_middle, SPARSE_RADIANCE).a > 1.5;
-    if (!smooth_cell) {
-        float tolerance = args.spacing > 2u ? SPARSE_TOLERANCE : SPARSE_TOLERANCE_FIRST;
-        smooth_cell = cell.known && error <= tolerance && !sees_sun(cell);
+    float tolerance = raymarch_has(RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? SPARSE_TOLERANCE_FIRST : SPARSE_TOLERANCE;
+    bool smooth_cell = !sees_sun(cell) && cell.known && error <= tolerance;
+    // A coarse cell that is smooth has been looked at, but beside it something may begin that spoils a cubic.
+    if (!in_window(sparse_pixel(coarse_middle)) || sparse_load(coarse_middle, SPARSE_RADIANCE).a < 1.5) {
         for (int i = 1; i < 4 && smooth_cell; i++) {
             smooth_cell = is_between(cell, sparse_pixel(node) + ivec2(i & 1, i >> 1), groups[i]);
         }

@@ -140,6 +140,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
 // What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 to 31 of lamps.
 struct march_shadows {
     uint known, lit;
+    uint edges; // of shadows that the ray has crossed
     float inside; // where to look at the farthest
 };
 
@@ -192,6 +193,7 @@ march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, ino
             lo = hi;
             hi = 0.0;
             lit = !lit;
+            shadow.edges++;
         }
     }
     shadow.known |= mask;
