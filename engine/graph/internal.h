@@ -363,7 +363,7 @@ void recorder_run(tyn_recorder *r);
 tyn_result recorder_run_all(const tyn_recorder *like, const bool *run_node);
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);
-// Before a node: what it makes may lie where others are; its first access to that waits for all commands and their writes.
+// Before a node: marks what it makes where others lie, so that its first access waits for all commands and their writes.
 void recorder_enter(tyn_recorder *r);
 void recorder_fail(tyn_recorder *r, tyn_result result, const char *what, const char *which);
 

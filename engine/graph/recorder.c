@@ -134,16 +134,21 @@ static tyn_track *track_of(tyn_recorder *r, uint32_t index)
 // One barrier for all memory in place of one for each touched resource, without transitions. It costs the same, and other
 // resources need none later. Where others lay before an image, it is for that, too: the image's own says nothing of their memory.
 // False: none is needed.
-static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count, tyn_barrier *all)
+// `first`: it must be a command of its own, before the transition of such an image.
+static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count, tyn_barrier *all,
+                          bool *first)
 {
     bool any = false;
     *all = (tyn_barrier){0};
+    *first = false;
     for (uint32_t i = 0; i < count; i++) {
         tyn_track track = *track_of(r, touches[i].resource);
         tyn_barrier own;
         const bool needed = tyn_plan(&track, touches[i].access, &own);
-        if (needed && (own.old_layout == own.new_layout ||
-                       own.src_stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)) {
+        const bool entered = needed && own.old_layout != own.new_layout &&
+                             own.src_stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        *first = *first || entered;
+        if (needed && (own.old_layout == own.new_layout || entered)) {
             tyn_barrier_join(all, &own);
             any = true;
         }
@@ -155,13 +160,35 @@ static bool join_barriers(tyn_recorder *r, const touch *touches, uint32_t count,
     return any;
 }
 
-// Puts what the touched resources need into the stream, as one command.
+static void put_barriers(tyn_recorder *r, const tyn_barrier *all,
+                         const VkImageMemoryBarrier2 *images, uint32_t num_images)
+{
+    r->barriers++;
+    if (r->mode == RECORD_PLAN) {
+        return;
+    }
+    const VkMemoryBarrier2 memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                     .srcStageMask = all ? all->src_stages : 0,
+                                     .srcAccessMask = all ? all->src_access : 0,
+                                     .dstStageMask = all ? all->dst_stages : 0,
+                                     .dstAccessMask = all ? all->dst_access : 0};
+    r->g->dev->vk.CmdPipelineBarrier2(
+        r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .memoryBarrierCount = all != NULL,
+                                    .pMemoryBarriers = &memory,
+                                    .imageMemoryBarrierCount = num_images,
+                                    .pImageMemoryBarriers = images});
+}
+
+// Puts what the touched resources need into the stream: one command, or two where other resources lay in an image's memory. The
+// parts of a command are not ordered, and a transition must not come before the others' writes have left the caches.
 static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
 {
     VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
     uint32_t num_images = 0;
     tyn_barrier all;
-    const bool any = join_barriers(r, touches, count, &all);
+    bool first;
+    const bool any = join_barriers(r, touches, count, &all, &first);
     if (any && r->mode == RECORD_PLAN) {
         print_barrier(r, "memory", &all);
     }
@@ -180,24 +207,12 @@ static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
             images[num_images++] = graph_image_barrier(res, r->g->phys[index].image, &own);
         }
     }
-    if (!any && !num_images) {
-        return;
+    if (first) {
+        put_barriers(r, &all, NULL, 0);
+        put_barriers(r, NULL, images, num_images);
+    } else if (any || num_images) {
+        put_barriers(r, any ? &all : NULL, images, num_images);
     }
-    r->barriers++;
-    if (r->mode == RECORD_PLAN) {
-        return;
-    }
-    const VkMemoryBarrier2 memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                     .srcStageMask = all.src_stages,
-                                     .srcAccessMask = all.src_access,
-                                     .dstStageMask = all.dst_stages,
-                                     .dstAccessMask = all.dst_access};
-    r->g->dev->vk.CmdPipelineBarrier2(
-        r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                    .memoryBarrierCount = any,
-                                    .pMemoryBarriers = &memory,
-                                    .imageMemoryBarrierCount = num_images,
-                                    .pImageMemoryBarriers = images});
 }
 
 void recorder_enter(tyn_recorder *r)
