@@ -75,7 +75,8 @@ static bool check_param(const char *who, const tyn_pass_desc *pass, const tyn_pa
                who, pass->name, name);
     }
     if (p->offset % 4 || p->offset + 4 > pass->params_size || !(p->min <= p->def) ||
-        !(p->def <= p->max)) {
+        !(p->def <= p->max) ||
+        (p->least > 0 && (p->least > p->max || (p->def < p->least && p->def != p->min)))) {
         REFUSE("%s: pass '%s', parameter '%s': it must lie within the %zu bytes of the params, and "
                "its default %g between %g and %g",
                who, pass->name, name, pass->params_size, p->def, p->min, p->max);

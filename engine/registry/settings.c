@@ -105,7 +105,7 @@ static bool parse_value(const tyn_param *param, const char *text, double *value)
     bool number = *text && !*end && errno == 0 && isfinite(*value);
     bool whole = param->type == TYN_PARAM_FLOAT || *value == floor(*value);
     return number && whole && *value >= param->min && *value <= param->max &&
-           (*value == param->min || *value >= param->least);
+           (param->least <= 0 || *value == param->min || *value >= param->least);
 }
 
 static void describe_range(char *text, size_t size, const tyn_param *param)
