@@ -48,7 +48,7 @@ typedef struct tyn_raymarch_params {
     uint32_t across; // the longer side of the whole picture's window; 0: of the whole picture
     // 1: single and multiple are interpolated where the picture is; 0: they have a ray in every pixel.
     uint32_t sparse_layers;
-    // Rays of nodes and of pixels have kernels of their own: a processor computes both sides of a branch.
+    // 1: rays of nodes and of pixels have kernels of their own. For software devices, which compute both sides of a branch.
     uint32_t parted;
     float depth[4]; // of the host's depth: tyn_job.host_depth
 } tyn_raymarch_params;

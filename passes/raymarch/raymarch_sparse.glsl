@@ -10,7 +10,8 @@
 //
 // Of a function with the second difference b between nodes, linear interpolation is off by b / 8 at most.
 // Bounds of the error of linear interpolation, relative to what is seen in the cell: of the first grid, between whose nodes details
-// may be missed, and of one that refines it. Cubics are far less off where the light is smooth.
+// may be missed, and of one that refines it. Among surfaces both have the first: light there has more edges. Cubics are far less
+// off where the light is smooth.
 
 const float SPARSE_TOLERANCE_FIRST = 0.018, SPARSE_TOLERANCE = 0.04;
 // Relative error of a ray's length x. The light of fog of depth t, 1 - e^-t, changes by x t e^-t with it: 1.1 % at most.
