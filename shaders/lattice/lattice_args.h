@@ -85,7 +85,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_GROUP_CELLS (16 * LATTICE_GROUP) // that it reduces
 #define LATTICE_MIX_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_NUM_DOTS 7                       // ... and of the last sweep
-#define LATTICE_TILE 8            // edge of the blocks of cells in which two colours are relaxed at once; even
+#define LATTICE_TILE 8 // edge of the blocks of cells in which two colours are relaxed at once; even
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_FEW 2048   // ... with 16 KiB of shared memory: exactly as much
 #define LATTICE_COARSE_GROUP 256
