@@ -317,9 +317,10 @@ void fill_pixels(ivec2 node)
     sparse_interpolate(cell, middle, error);
     const ivec2 coarse_middle = node | 1; // of its coarse cell, which ends the window or has been filled
     float tolerance = raymarch_has(RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? SPARSE_TOLERANCE_FIRST : SPARSE_TOLERANCE;
-    bool smooth_cell = !sees_sun(cell) && cell.known && error <= tolerance;
+    bool smooth_cell = cell.known && error <= tolerance;
     // A coarse cell that is smooth has been looked at, but beside it something may begin that spoils a cubic.
     if (!in_window(sparse_pixel(coarse_middle)) || sparse_load(coarse_middle, SPARSE_RADIANCE).a < 1.5) {
+        smooth_cell = smooth_cell && !sees_sun(cell);
         for (int i = 1; i < 4 && smooth_cell; i++) {
             smooth_cell = is_between(cell, sparse_pixel(node) + ivec2(i & 1, i >> 1), groups[i]);
         }
