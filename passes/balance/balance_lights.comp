@@ -41,7 +41,7 @@ const uint SUN = 0u, SKY = 1u, LAMP = 2u, VPL = 3u;
 
 vec3 sent = vec3(0.0), kept = vec3(0.0), escaped = vec3(0.0); // W
 
-vec3 albedo_at(surface_hit hit)
+vec3 albedo_at(const surface_hit hit)
 {
     uvec4 t = surface_triangle_at(hit.triangle);
     surface_material m = surface_material_at(t.w);
@@ -55,7 +55,7 @@ vec3 albedo_at(surface_hit hit)
 }
 
 // Does light reflected at a point of a surface, to the side of `normal`, leave the scene? Along one way of many.
-bool leaves(surface_point p, vec3 normal, inout rng_state rng)
+bool leaves(const surface_point p, vec3 normal, inout rng_state rng)
 {
     vec2 u = rng_vec2(rng_next(rng).xy);
     float z = sqrt(1.0 - u.x), r = sqrt(u.x), azimuth = 2.0 * 3.14159265 * u.y;

@@ -72,7 +72,7 @@ void beam_store(ivec3 texel, mat3x4 value)
 
 // Slices of a column from which points in the box can be interpolated: those between the first entry
 // and the last exit of the rays up to one column away. The others are never read.
-uvec2 beam_span(beam_block beam, vec3 start, float spacing)
+uvec2 beam_span(const beam_block beam, vec3 start, float spacing)
 {
     if (beam.even != 0u) {
         return uvec2(0u, beam.nodes.z - 1u);
@@ -89,7 +89,7 @@ uvec2 beam_span(beam_block beam, vec3 start, float spacing)
 }
 
 // Returns whether the ray has met anything beside the box before it enters.
-bool beam_sweep(beam_block beam, uvec2 column)
+bool beam_sweep(const beam_block beam, uvec2 column)
 {
     vec3 start = beam.origin + float(column.x) * beam.step_u + float(column.y) * beam.step_v;
     vec3 inside = start * beam.clip_scale + beam.clip_offset;

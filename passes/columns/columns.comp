@@ -31,7 +31,7 @@ void columns_store(uint node, mat3 value)
 #endif
 
 // A column of an ordinate's grid: from slice to slice, since it entered the medium's box.
-void columns_march(columns_grid grid, ivec2 column, uint base)
+void columns_march(const columns_grid grid, ivec2 column, uint base)
 {
     int samples = columns_samples(grid);
     vec2 origin = vec2(column) - 0.5; // place in slice 0

@@ -34,7 +34,7 @@ vec3 columns_step(vec3 direction, float dx, int axis)
     return mix(vec3(0.0), cell, equal(ivec3(axis), ivec3(0, 1, 2)));
 }
 
-columns_grid columns_grid_of(vec3 direction, lattice_box box)
+columns_grid columns_grid_of(vec3 direction, const lattice_box box)
 {
     columns_grid grid;
     // A direction that is none (nothing comes along it) is as good as any, but it must be one.
@@ -62,14 +62,14 @@ columns_grid columns_grid_of(vec3 direction, lattice_box box)
 }
 
 // Texture coordinate of a place.
-vec3 columns_uvw(columns_grid grid, vec2 at, float slice)
+vec3 columns_uvw(const columns_grid grid, vec2 at, float slice)
 {
     return grid.start + (at.x - slice * grid.shear.x) * grid.step_u +
            (at.y - slice * grid.shear.y) * grid.step_v + slice * grid.per_slice;
 }
 
 // Trilinear samples from slice to slice: one for two voxels and a half.
-int columns_samples(columns_grid grid)
+int columns_samples(const columns_grid grid)
 {
     vec3 voxels = abs(grid.per_slice) * vec3(textureSize(density_tex, 0));
     return int(clamp(ceil(0.4 * max(voxels.x, max(voxels.y, voxels.z)) - 0.01), 1.0, 64.0));
@@ -77,7 +77,7 @@ int columns_samples(columns_grid grid)
 
 // Slices that the ray through a place has crossed since it entered the box; beyond the far side of
 // the box it counts as inside.
-vec2 columns_inside(columns_grid grid, vec2 along_u, vec2 along_v, vec2 slice)
+vec2 columns_inside(const columns_grid grid, vec2 along_u, vec2 along_v, vec2 slice)
 {
     return max(min(min(along_u, along_v), slice - grid.front), 0.0);
 }

@@ -27,7 +27,7 @@ ivec2 texel_of(ivec2 corner, int k)
 }
 
 // What a pixel shows whose samples all lie on one piece of surface: `p` is of the first, with means of the others.
-void store_whole(ivec2 pixel, gbuffer_point p)
+void store_whole(ivec2 pixel, const gbuffer_point p)
 {
     imageStore(facing_image, pixel, gbuffer_facing_pack(gbuffer_facing(GBUFFER_WHOLE, 0, p.normal, p.facet)));
     imageStore(colours_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_pack(p.colours));

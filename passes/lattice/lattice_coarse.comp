@@ -58,7 +58,7 @@ float correction_at(uint i)
 #include "lattice_inflow.glsl"
 
 // Right hand side plus what flows in from the neighbours.
-float inflow(ivec3 c, lattice_stencil k)
+float inflow(ivec3 c, const lattice_stencil k)
 {
     uint i = index_of(c);
     float sum = at.first == first.first ? texelFetch(rhs_words, int(channel + lattice_index(at, c))).x

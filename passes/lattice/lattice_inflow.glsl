@@ -23,7 +23,7 @@ float lattice_beside(uint i, int at, int size, int step, int way, int axis)
 }
 
 // `sum` and what flows in; i: index of cell c of a level, k its equation.
-float lattice_inflow(float sum, lattice_level level, ivec3 c, uint i, lattice_stencil k)
+float lattice_inflow(float sum, const lattice_level level, ivec3 c, uint i, const lattice_stencil k)
 {
     int step_y = level.size.x, step_z = level.size.x * level.size.y;
     sum += k.lo.x * lattice_beside(i, c.x, level.size.x, 1, -1, 0);

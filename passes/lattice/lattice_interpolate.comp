@@ -25,7 +25,7 @@ float correction_at(uint i)
 #define TILE_GROUP 256 // a cell of colour 0 each
 #include "lattice_tile.glsl"
 
-float tile_correction(lattice_level fine, ivec3 c, uint i, bool own)
+float tile_correction(const lattice_level fine, ivec3 c, uint i, bool own)
 {
     lattice_level coarse = lattice_next_level(fine);
     lattice_interpolation from = lattice_interpolation_of(c, coarse.size, lattice_repeat);

@@ -13,7 +13,7 @@ uint lattice_num_cells(ivec3 size)
     return uint(size.x * size.y * size.z);
 }
 
-lattice_level lattice_next_level(lattice_level l)
+lattice_level lattice_next_level(const lattice_level l)
 {
     return lattice_level((l.size + 1) / 2, l.first + lattice_num_cells(l.size));
 }
@@ -27,7 +27,7 @@ lattice_level lattice_level_of(ivec3 dims, uint level)
     return l;
 }
 
-uint lattice_index(lattice_level l, ivec3 c)
+uint lattice_index(const lattice_level l, ivec3 c)
 {
     return l.first + uint((c.z * l.size.y + c.y) * l.size.x + c.x);
 }

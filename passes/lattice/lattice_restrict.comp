@@ -27,7 +27,7 @@ float correction_at(uint i)
 #define TILE_GROUP 64 // a coarse cell each
 #include "lattice_tile.glsl"
 
-float tile_correction(lattice_level level, ivec3 c, uint i, bool own)
+float tile_correction(const lattice_level level, ivec3 c, uint i, bool own)
 {
     lattice_stencil k = lattice_stencil_at(i);
     float e = lattice_inflow(texelFetch(rhs_words, int(i)).x, level, c, i, k) / k.diagonal;

@@ -36,12 +36,12 @@ bool lattice_open(vec3 lo, vec3 hi)
     return all(greaterThan(lo, vec3(0.0))) && all(greaterThan(hi, vec3(0.0)));
 }
 
-vec4 lattice_stencil_lo(lattice_stencil k)
+vec4 lattice_stencil_lo(const lattice_stencil k)
 {
     return vec4(k.lo, k.absorption);
 }
 
-vec4 lattice_stencil_hi(lattice_stencil k)
+vec4 lattice_stencil_hi(const lattice_stencil k)
 {
     return vec4(k.hi, k.absorption + dot(k.lo + k.hi, vec3(1.0)));
 }
@@ -64,7 +64,7 @@ lattice_interpolation lattice_interpolation_of(ivec3 fine, ivec3 coarse_size, ui
     return lattice_interpolation(near, far);
 }
 
-ivec3 lattice_corner(lattice_interpolation l, uint corner)
+ivec3 lattice_corner(const lattice_interpolation l, uint corner)
 {
     return ivec3((corner & 1) == 0 ? l.near.x : l.far.x, (corner & 2) == 0 ? l.near.y : l.far.y,
                  (corner & 4) == 0 ? l.near.z : l.far.z);

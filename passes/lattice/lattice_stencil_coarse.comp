@@ -20,7 +20,7 @@ layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 
 // Children of coarse cell c that are connected with each other, most of them: bit = child.
-uint largest_part(lattice_level fine, ivec3 c, uint channel)
+uint largest_part(const lattice_level fine, ivec3 c, uint channel)
 {
     uint part[8];
     vec3 hi[8];
@@ -48,7 +48,7 @@ uint largest_part(lattice_level fine, ivec3 c, uint channel)
     return largest;
 }
 
-void mark_orphans(lattice_level fine, ivec3 c, uint channel)
+void mark_orphans(const lattice_level fine, ivec3 c, uint channel)
 {
     uint part = largest_part(fine, c, channel);
     for (int child = 0; child < 8; child++) {
@@ -61,7 +61,7 @@ void mark_orphans(lattice_level fine, ivec3 c, uint channel)
 }
 
 // Is there a wall between a cell, or what stands for it on the next level, and its neighbour?
-bool parted(lattice_level fine, ivec3 f, int axis, int way, uint channel)
+bool parted(const lattice_level fine, ivec3 f, int axis, int way, uint channel)
 {
     if (walls == 0) {
         return false;

@@ -12,7 +12,7 @@ TYN_READ(1, stencil_hi, vec4 stencil_hi[]);
 
 layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 
-bool near_walls(uint in_level, lattice_level fine, lattice_level coarse, uint channel)
+bool near_walls(uint in_level, const lattice_level fine, const lattice_level coarse, uint channel)
 {
     ivec3 c = quotient_place(in_level, fine.size);
     lattice_interpolation from = lattice_interpolation_of(c, coarse.size, lattice_repeat);

@@ -14,23 +14,23 @@ struct lattice_block {
 };
 
 // ch: of the workgroup.
-lattice_block lattice_block_of(lattice_level level)
+lattice_block lattice_block_of(const lattice_level level)
 {
     int deep = (level.size.z + TILE - 1) / TILE, ch = int(gl_WorkGroupID.z) / deep;
     return lattice_block(TILE * (ivec3(gl_WorkGroupID) - ivec3(0, 0, ch * deep)), uint(ch) * args.stride);
 }
 
 // Where the cell c of a block or beside it is in the tile.
-int tile_index(lattice_block block, ivec3 c)
+int tile_index(const lattice_block block, ivec3 c)
 {
     ivec3 t = c - block.begin + 1;
     return (t.z * WIDE + t.y) * WIDE + t.x;
 }
 
 // The including kernel's: correction of cell c of colour 1, whose index is i. own: it is in the block.
-float tile_correction(lattice_level level, ivec3 c, uint i, bool own);
+float tile_correction(const lattice_level level, ivec3 c, uint i, bool own);
 
-void fill_tile(lattice_level level, lattice_block block)
+void fill_tile(const lattice_level level, const lattice_block block)
 {
     for (uint n = gl_LocalInvocationIndex; n < WIDE * WIDE * WIDE / 2; n += TILE_GROUP) {
         ivec3 t = quotient_place(n, ivec3(WIDE / 2, WIDE, WIDE));
@@ -51,7 +51,7 @@ void fill_tile(lattice_level level, lattice_block block)
 }
 
 // lattice_inflow by the tile.
-float tile_inflow(float sum, int at, lattice_stencil k)
+float tile_inflow(float sum, int at, const lattice_stencil k)
 {
     sum += k.lo.x * tile[at - 1];
     sum += k.hi.x * tile[at + 1];

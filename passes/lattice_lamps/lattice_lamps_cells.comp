@@ -41,7 +41,7 @@ uint pieces(uint n, float cells_away)
 }
 
 // Of a light that is far away: the cell as a whole. `extinction`: sigma_t' of its channels.
-void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 sums[3], inout vec3 all)
+void add_far_light(uint n, const lattice_box box, vec3 p, vec3 extinction, inout vec4 sums[3], inout vec3 all)
 {
     vec3 away = p - radials[n].light.position;
     disc_light light = lattice_lamps_light(radials[n].light, away, box.dx);

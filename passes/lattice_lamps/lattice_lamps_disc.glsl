@@ -3,7 +3,7 @@
 #include "disc.glsl"
 
 // Mean over a cube of edge d whose middle is at `away`.
-disc_light lattice_lamps_light(light_block light, vec3 away, float d)
+disc_light lattice_lamps_light(const light_block light, vec3 away, float d)
 {
     float r2 = dot(away, away), d2 = d * d, point = radial_mean_inverse_square(r2, d2);
     if (light.kind != TYN_LIGHT_KIND_COSINE || light.radius <= 0.0) {

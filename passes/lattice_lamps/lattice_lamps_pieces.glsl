@@ -5,7 +5,7 @@
 #include "shaders/common/quotient.glsl"
 
 // Adds light n to the moments of the channels, the cell cut into count^3 pieces.
-void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
+void lattice_lamps_add_pieces(uint n, uint count, const lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
 {
     vec3 corner = lattice_to_m(box, vec3(c)), position = radials[n].light.position;
     float d = box.dx / float(count);

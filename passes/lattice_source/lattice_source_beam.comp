@@ -42,7 +42,7 @@ float sum3(vec3 v)
 
 // Gradient of the depth, summed over channels, across the light: from four corners of the middle half of what
 // the cell has of the medium, 1/m.
-vec3 depth_across(uint sun, lattice_box box, ivec3 c, vec3 direction)
+vec3 depth_across(uint sun, const lattice_box box, ivec3 c, vec3 direction)
 {
     vec3 lo = max(lattice_to_m(box, vec3(c)), vec3(0.0));
     vec3 hi = min(lattice_to_m(box, vec3(c + 1)), medium.extent);

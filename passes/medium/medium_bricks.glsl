@@ -13,7 +13,7 @@ vec2 brick_add(vec2 range, float value)
 
 // Atlas values that interpolation reads anywhere in the M box [lo, hi] of a shape: all texels that its
 // image touches, and one more around. A value outside the shape counts as 0.
-vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
+vec2 brick_of_shape(const shape_block s, vec3 lo, vec3 hi)
 {
     vec3 centre = shape_local(s, 0.5 * (lo + hi));
     vec3 local_half = shape_local_half(s, 0.5 * (hi - lo));
@@ -39,7 +39,7 @@ vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
 
 #ifdef TYN_COLORS
 // Is the grid by which a shape emits above 0 anywhere in the M box? Likewise.
-bool brick_glows(shape_block s, vec3 lo, vec3 hi)
+bool brick_glows(const shape_block s, vec3 lo, vec3 hi)
 {
     vec3 centre = shape_local(s, 0.5 * (lo + hi));
     vec3 local_half = shape_local_half(s, 0.5 * (hi - lo));

@@ -10,21 +10,21 @@ TYN_READ(SHAPES, shapes, shape_block shapes[]);
 layout(set = 0, binding = ATLAS) uniform sampler3D atlas_tex;
 
 // M -> local unit box.
-vec3 shape_local(shape_block s, vec3 p)
+vec3 shape_local(const shape_block s, vec3 p)
 {
     return vec3(dot(s.rows[0].xyz, p) + s.rows[0].w, dot(s.rows[1].xyz, p) + s.rows[1].w,
                 dot(s.rows[2].xyz, p) + s.rows[2].w);
 }
 
 // Half edges of the local box around an M box of half edges `half_box`.
-vec3 shape_local_half(shape_block s, vec3 half_box)
+vec3 shape_local_half(const shape_block s, vec3 half_box)
 {
     return vec3(dot(abs(s.rows[0].xyz), half_box), dot(abs(s.rows[1].xyz), half_box),
                 dot(abs(s.rows[2].xyz), half_box));
 }
 
 // Texture value at a local position; outside the shape its edge value.
-float shape_value(shape_block s, vec3 local)
+float shape_value(const shape_block s, vec3 local)
 {
     vec3 size = vec3(s.size);
     vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(s.offset);
@@ -34,7 +34,7 @@ float shape_value(shape_block s, vec3 local)
 
 // Part of a small M box (local centre and half edges given, M half edges `half_box`) that is in the
 // shape: exact where the faces of both are parallel, for a sphere that of its tangent plane.
-float shape_cover(shape_block s, vec3 local, vec3 local_half, vec3 half_box)
+float shape_cover(const shape_block s, vec3 local, vec3 local_half, vec3 half_box)
 {
     if (s.kind == TYN_SHAPE_KIND_BOX) {
         vec3 overlap = min(local + local_half, vec3(0.5)) - max(local - local_half, vec3(-0.5));
@@ -49,14 +49,14 @@ float shape_cover(shape_block s, vec3 local, vec3 local_half, vec3 half_box)
 }
 
 // Is the box (local centre and half edges) surely outside, surely inside the shape? In between: neither.
-bool shape_misses(shape_block s, vec3 local, vec3 local_half)
+bool shape_misses(const shape_block s, vec3 local, vec3 local_half)
 {
     vec3 nearest = max(abs(local) - local_half, vec3(0.0));
     return s.kind == TYN_SHAPE_KIND_BOX ? any(greaterThanEqual(nearest, vec3(0.5)))
                                         : dot(nearest, nearest) >= 0.25;
 }
 
-bool shape_contains(shape_block s, vec3 local, vec3 local_half)
+bool shape_contains(const shape_block s, vec3 local, vec3 local_half)
 {
     vec3 farthest = abs(local) + local_half;
     return s.kind == TYN_SHAPE_KIND_BOX ? all(lessThanEqual(farthest, vec3(0.5 + 1e-5)))
@@ -100,7 +100,7 @@ uint shapes_next(uint first)
 #endif
 
 // Texels of a grid along a voxel, at least 1 and at most `most`.
-int shape_texels(shape_block s, uvec3 size, int most)
+int shape_texels(const shape_block s, uvec3 size, int most)
 {
     vec3 texels = vec3(size) * vec3(length(s.rows[0].xyz * medium.voxel), length(s.rows[1].xyz * medium.voxel),
                                     length(s.rows[2].xyz * medium.voxel));
@@ -109,7 +109,7 @@ int shape_texels(shape_block s, uvec3 size, int most)
 
 // Mean over the voxel around p of the texture value, 0 outside the shape. `samples` per axis where the
 // voxel is on the shape's edge; inside, as many as it has texels.
-float shape_mean(shape_block s, vec3 p, int samples)
+float shape_mean(const shape_block s, vec3 p, int samples)
 {
     vec3 centre = shape_local(s, p);
     vec3 local_half = shape_local_half(s, 0.5 * medium.voxel);
@@ -146,14 +146,14 @@ float shape_mean(shape_block s, vec3 p, int samples)
 layout(set = 0, binding = COLORS) uniform sampler3D colors_tex;
 
 // A grid of colours (TYN_COLORS_*) at a local position; outside the shape its edge value.
-vec3 shape_color(shape_block s, uint which, vec3 local)
+vec3 shape_color(const shape_block s, uint which, vec3 local)
 {
     vec3 texel = shape_colors_texel(s.colors[which], local);
     return s.colors[which].scale * textureLod(colors_tex, texel / vec3(textureSize(colors_tex, 0)), 0.0).rgb;
 }
 
 // Means over the voxel around p, 0 outside the shape: sigma_s, sigma_a, emission.
-mat3 shape_means(shape_block s, vec3 p, int samples)
+mat3 shape_means(const shape_block s, vec3 p, int samples)
 {
     vec3 centre = shape_local(s, p);
     vec3 local_half = shape_local_half(s, 0.5 * medium.voxel);
@@ -194,7 +194,7 @@ mat3 shape_means(shape_block s, vec3 p, int samples)
 #endif
 
 // Mode DENSITY: how many times the block's coefficients this shape's are at atlas value 1.
-float shape_scale(shape_block s)
+float shape_scale(const shape_block s)
 {
     vec3 sigma_t = s.sigma_s + s.sigma_a;
     float largest = max(max(sigma_t.x, sigma_t.y), sigma_t.z);

@@ -13,7 +13,7 @@ uint merge_index(ivec3 cell, uint plane)
 }
 
 // Direction from the middle of a cell to the eye.
-vec3 merge_towards_eye(camera_block camera, lattice_box box, ivec3 cell)
+vec3 merge_towards_eye(const camera_block camera, const lattice_box box, ivec3 cell)
 {
     vec3 v = camera.origin - lattice_to_m(box, vec3(cell) + 0.5);
     return camera_select(camera, -camera.forward, v / max(length(v), 1e-20));
@@ -22,7 +22,7 @@ vec3 merge_towards_eye(camera_block camera, lattice_box box, ivec3 cell)
 const float MERGE_REACH = 1.7; // edges of a cell: light of one that is farther outside the picture is not blended into it
 
 // Weight of a cell in the picture: 1 over the square of its distance in edges; 0 where neither it nor a neighbour is seen.
-float merge_weight(camera_block camera, lattice_box box, ivec3 cell)
+float merge_weight(const camera_block camera, const lattice_box box, ivec3 cell)
 {
     vec3 v = (lattice_to_m(box, vec3(cell) + 0.5) - camera.origin) / box.dx;
     vec2 slope = vec2(camera.half_width, camera.half_height); // of the picture's sides

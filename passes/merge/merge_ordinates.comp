@@ -24,13 +24,13 @@ TYN_UPDATE(3, field, float field[]);
 #include "merge_read.glsl"
 
 // k e^-tau' of an ordinate, per channel.
-vec3 grey_share(uint n, uvec3 cell, beam_tau unit, tms_row row, float mu, float level)
+vec3 grey_share(uint n, uvec3 cell, const beam_tau unit, const tms_row row, float mu, float level)
 {
     float column = columns_density(n, cell, args.dims);
     return vec3(exp(-(unit.a.r + unit.p.r) * column) * tms_kernel(row, mu, unit.s.r * column, level));
 }
 
-vec3 coloured_share(uint n, uvec3 cell, beam_tau unit, tms_row row[3], float mu, float level)
+vec3 coloured_share(uint n, uvec3 cell, const beam_tau unit, tms_row row[3], float mu, float level)
 {
     float column = columns_density(n, cell, args.dims);
     vec3 k = exp(-(unit.a + unit.p) * column);

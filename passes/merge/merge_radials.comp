@@ -42,7 +42,7 @@ vec4 cell_of(ivec3 c, uint ch)
 }
 
 // e^-(tau - tau') between the middle of a cell and the eye.
-vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
+vec3 forward_part(const lattice_box box, ivec3 c, vec3 v)
 {
     vec3 p = lattice_to_m(box, vec3(c) + 0.5);
     vec3 way = mix(medium.extent - p, -p, lessThan(v, vec3(0.0))) /
@@ -68,7 +68,7 @@ vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
 }
 
 // (K_tms + K_lobe `forward`) / (1 - f) of a channel.
-float kernel(uint ch, phase last, float one_minus_mu, float tau_s, float tau_p, float forward)
+float kernel(uint ch, const phase last, float one_minus_mu, float tau_s, float tau_p, float forward)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         scatter_angle angle = scatter_angle_of_point(ch, one_minus_mu);

@@ -40,7 +40,7 @@ tms_row tms_row_of_channel(uint channel)
 
 // k, 1/sr. `mu`: cosine between the light's travel and the way to the eye; `level`: tms_level of the
 // ordinate's solid angle / (4 pi). One fetch.
-float tms_kernel(tms_row row, float mu, float tau_s, float level)
+float tms_kernel(const tms_row row, float mu, float tau_s, float level)
 {
     vec3 at = vec3(tms_u(tau_s, row.scale), tms_v(1.0 - row.side * mu),
                    row.w + level / float(lut.num_rows * TYN_TMS_CONES));
@@ -65,7 +65,7 @@ struct tms_last {
     phase phase;
 };
 
-tms_last tms_last_of(phase last)
+tms_last tms_last_of(const phase last)
 {
     float g = phase_mean_cosine(last);
     float row = lut_row(lut.log_first, lut.log_step, lut.num_rows, min(g, HG_MAX));
@@ -76,7 +76,7 @@ tms_last tms_last_of(phase last)
 
 // The mean of (1 - f) on the way was tau_p / tau_s. A beam of the last scattering's g that is as wide as
 // that one has another depth.
-float tms_kernel_mixed(tms_last last, float mu, float tau_s, float tau_p, float level,
+float tms_kernel_mixed(const tms_last last, float mu, float tau_s, float tau_p, float level,
                        float mean_cosine)
 {
     float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, delta_fraction(HG_MAX)) : 0.0;

@@ -31,19 +31,19 @@ float ordinates_corner(vec2 p, uint table)
                f.y);
 }
 
-float ordinates_light(ordinates_region r, uint table)
+float ordinates_light(const ordinates_region r, uint table)
 {
     return ordinates_corner(r.to, table) - ordinates_corner(vec2(r.from.x, r.to.y), table) -
            ordinates_corner(vec2(r.to.x, r.from.y), table) + ordinates_corner(r.from, table);
 }
 
-float ordinates_mass(ordinates_region r, ordinates_density density)
+float ordinates_mass(const ordinates_region r, const ordinates_density density)
 {
     return ordinates_light(r, density.table) + density.uniform_part * ordinates_solid_angle(r);
 }
 
 // Where `part` of the mass lies to the left of (axis 0) or above (axis 1) the cut.
-float ordinates_cut(ordinates_region r, uint axis, float part, ordinates_density density)
+float ordinates_cut(const ordinates_region r, uint axis, float part, const ordinates_density density)
 {
     float target = part * ordinates_mass(r, density);
     // The bracket shrinks to a piece of one texel, in which mass grows linearly.
@@ -62,7 +62,7 @@ float ordinates_cut(ordinates_region r, uint axis, float part, ordinates_density
     return mix(at.x, at.y, rise > 0.0 ? clamp((target - mass.x) / rise, 0.0, 1.0) : 0.5);
 }
 
-void ordinates_divide(ordinates_region r, uint axis, float cut, out ordinates_region lower,
+void ordinates_divide(const ordinates_region r, uint axis, float cut, out ordinates_region lower,
                       out ordinates_region upper)
 {
     lower = r;
@@ -72,7 +72,7 @@ void ordinates_divide(ordinates_region r, uint axis, float cut, out ordinates_re
 }
 
 // The axis whose cut leaves the more compact pieces: 0 across, 1 down. `cut` is where.
-uint ordinates_axis(ordinates_region r, float part, ordinates_density density, out float cut)
+uint ordinates_axis(const ordinates_region r, float part, const ordinates_density density, out float cut)
 {
     vec2 cuts, width;
     for (uint axis = 0u; axis < 2u; axis++) {

@@ -66,7 +66,7 @@ float part_below(uint node)
     return float(lower_leaves(leaves[node])) / float(leaves[node]);
 }
 
-void grow_tree(ordinates_density density)
+void grow_tree(const ordinates_density density)
 {
     plant_tree();
     for (uint level = 0u; level < LEVELS; level++) {
@@ -80,7 +80,7 @@ void grow_tree(ordinates_density density)
 }
 
 // Along the axes of the tree before.
-void grow_tree_again(ordinates_density density)
+void grow_tree_again(const ordinates_density density)
 {
     plant_tree();
     for (uint level = 0u; level < LEVELS; level++) {

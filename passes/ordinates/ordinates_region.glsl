@@ -27,14 +27,14 @@ float ordinates_azimuth(float x)
     return (x / float(SKY_SUMS_WIDTH) - 0.5) * 2.0 * SKY_PI;
 }
 
-float ordinates_solid_angle(ordinates_region r)
+float ordinates_solid_angle(const ordinates_region r)
 {
     return (r.to.x - r.from.x) * (2.0 * SKY_PI / float(SKY_SUMS_WIDTH)) *
            (ordinates_drop(r.to.y) - ordinates_drop(r.from.y));
 }
 
 // Integral of the direction over a region, map frame.
-vec3 ordinates_vector(ordinates_region r)
+vec3 ordinates_vector(const ordinates_region r)
 {
     vec2 polar = vec2(ordinates_polar(r.from.y), ordinates_polar(r.to.y));
     vec2 azimuth = vec2(ordinates_azimuth(r.from.x), ordinates_azimuth(r.to.x));
@@ -56,7 +56,7 @@ uint ordinates_entry(vec2 p, out vec2 f)
 const uint ORDINATES_ROW = SKY_SUMS_WIDTH + 1;
 
 // Solid angle of a region by which its directions miss each other: 0 for a point, least for a cap.
-float ordinates_width(ordinates_region r)
+float ordinates_width(const ordinates_region r)
 {
     return ordinates_solid_angle(r) - length(ordinates_vector(r));
 }

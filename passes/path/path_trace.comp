@@ -21,7 +21,7 @@ layout(binding = 27) uniform sampler3D guide_beams_tex;
 #include "shaders/path/path.glsl"
 
 // Of radiance (fluence + 3 flux . direction) / (4 pi).
-vec3 path_field(vec3 at, vec3 way, media_point m)
+vec3 path_field(vec3 at, vec3 way, const media_point m)
 {
     const vec3 place = at / medium.extent;
     const vec4 red = textureLod(field_red_tex, place, 0.0), green = textureLod(field_green_tex, place, 0.0),
@@ -108,7 +108,7 @@ void path_direct(vec3 direction, vec3 irradiance)
 {
 }
 
-void path_end(path_result result)
+void path_end(const path_result result)
 {
     bool background = camera.background != 0u;
     vec3 radiance = result.radiance + (background ? result.background + result.reflected : vec3(0.0));

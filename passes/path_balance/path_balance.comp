@@ -61,7 +61,7 @@ vec3 box_face_point(vec3 lo, vec3 hi, uvec4 bits)
 }
 
 // What is left, out of sight of everything, of light that goes on from a surface by the cosine.
-vec3 reflected_out(path_state path, surface_point point, vec3 side, inout rng_state rng)
+vec3 reflected_out(path_state path, const surface_point point, vec3 side, inout rng_state rng)
 {
     uvec4 bits = rng_next(rng);
     path.vertex = surface_offset(point, side);
@@ -107,7 +107,7 @@ vec3 solid_point(uvec4 bits, inout rng_state rng)
 }
 
 // A point of the unit box's or the sphere's surface, and its outward normal there.
-vec3 media_face_local(shape_block shape, vec3 random, out vec3 outward, out float area)
+vec3 media_face_local(const shape_block shape, vec3 random, out vec3 outward, out float area)
 {
     if (shape_is_sphere(shape)) {
         float z = 1.0 - 2.0 * random.x, r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
@@ -322,7 +322,7 @@ void add_group()
     }
 }
 
-void path_end(path_result result)
+void path_end(const path_result result)
 {
     vec3 fluence = (result.radiance + result.background + result.reflected) / heading_pdf;
     float outwards = outward_cosine(heading);

@@ -55,7 +55,7 @@ vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
 }
 
 // Through which face, 2 axis + (1: the far one), light leaves the box.
-uint face_left(path_state path)
+uint face_left(const path_state path)
 {
     vec3 inverse = ray_inverse(path.way);
     vec3 t = max((args.box_lo - path.vertex) * inverse, (args.box_hi - path.vertex) * inverse);
@@ -64,7 +64,7 @@ uint face_left(path_state path)
     return 2u * axis + (path.way[axis] > 0.0 ? 1u : 0u);
 }
 
-void leave(path_state path, vec3 power, vec3 entered)
+void leave(const path_state path, vec3 power, vec3 entered)
 {
     uint face = face_left(path);
     for (uint i = 0u; i < 6u; i++) {

@@ -43,7 +43,7 @@ void add_value(uint i, float value, float share)
     partial.deviation[i] += delta * (value - partial.mean[i]);
 }
 
-void path_end(path_result result)
+void path_end(const path_result result)
 {
     vec3 radiance = result.radiance + result.reflected;
     if ((FLAGS & TYN_PATH_SCATTERED) == 0u) {

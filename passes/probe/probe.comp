@@ -45,7 +45,7 @@ struct cell_corners {
     vec3 t;
 };
 
-cell_corners corners_of(lattice_box box, vec3 p)
+cell_corners corners_of(const lattice_box box, vec3 p)
 {
     vec3 x = clamp(lattice_from_m(box, p), vec3(0.0), vec3(box.dims)) - 0.5;
     ivec3 lo = clamp(ivec3(floor(x)), ivec3(0), max(box.dims - 2, 0));
@@ -61,7 +61,7 @@ cell_corners corners_of(lattice_box box, vec3 p)
     return corners;
 }
 
-ivec3 corner_of(cell_corners c, uint corner, out float weight)
+ivec3 corner_of(const cell_corners c, uint corner, out float weight)
 {
     bvec3 far = bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
     vec3 w = mix(1.0 - c.t, c.t, far);
@@ -69,7 +69,7 @@ ivec3 corner_of(cell_corners c, uint corner, out float weight)
     return ivec3(far.x ? c.hi.x : c.lo.x, far.y ? c.hi.y : c.lo.y, far.z ? c.hi.z : c.lo.z);
 }
 
-vec4 moments_at(lattice_box box, vec3 p, uint ch)
+vec4 moments_at(const lattice_box box, vec3 p, uint ch)
 {
     if (walls == 1) {
         walls_place place = walls_place_of(box, p);
@@ -100,7 +100,7 @@ vec3 mean_of(vec3 tau0, vec3 tau1)
 // fraction of a cell. The line through two cells' means is that of their sum, which changes little.
 // So this adds what the line has of sunlight, less the sunlight at p, per unit of its irradiance:
 // as much as of its losses is scattered.
-vec3 sunlight_in_line(lattice_box box, uint sun, vec3 p)
+vec3 sunlight_in_line(const lattice_box box, uint sun, vec3 p)
 {
     vec3 x = lattice_from_m(box, p), sum = vec3(0.0);
     if (args.cells == 0u || any(lessThan(x, vec3(0.0))) || any(greaterThan(x, vec3(box.dims)))) {
@@ -132,7 +132,7 @@ vec3 sunlight_in_line(lattice_box box, uint sun, vec3 p)
     return sum;
 }
 
-beam_tau ordinate_tau(lattice_box box, vec3 p, uint n)
+beam_tau ordinate_tau(const lattice_box box, vec3 p, uint n)
 {
     cell_corners corners = corners_of(box, p);
     beam_tau sum = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -176,7 +176,7 @@ beam_tau lamp_tau(uint n, vec3 away)
 }
 
 // The cell that stands for p: its own, or the one on p's side of walls that has most to say of it.
-ivec3 cell_for(lattice_box box, walls_place place, vec3 p)
+ivec3 cell_for(const lattice_box box, const walls_place place, vec3 p)
 {
     ivec3 cell = place.cell;
     if (walls_near(place)) {
@@ -194,7 +194,7 @@ ivec3 cell_for(lattice_box box, walls_place place, vec3 p)
 // Share of a VPL's light that surfaces let through to p. Its map is coarse, and the edge of a body that stands towards
 // the VPL may pass between its rays: unless all of them go on far beyond p, and no wall at p parts it from the VPL, the
 // lattice is asked, too, which no light leaks through.
-float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
+float vpl_share(const lattice_box box, uint n, vec3 p, vec3 away, float r)
 {
     vec3 position = radials[n].light.position, axis = radials[n].light.direction;
     vpl_map map = vpl_map_of(n - radial_num_lamps, axis);

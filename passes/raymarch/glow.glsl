@@ -17,13 +17,13 @@ float glow_w(float t, int levels)
 }
 
 // B / env.radiance per channel for a unit direction of M, outwards. `glow` wraps in x.
-vec3 glow_radiance(sampler3D glow, env_block env, vec3 d_M, float t)
+vec3 glow_radiance(sampler3D glow, const env_block env, vec3 d_M, float t)
 {
     vec2 uv = environment_uv(environment_map_direction(env, d_M));
     return textureLod(glow, vec3(uv, glow_w(t, textureSize(glow, 0).z)), 0.0).rgb;
 }
 
-vec3 glow_radiance(sampler3D glow, env_block env, vec3 d_M, vec3 t)
+vec3 glow_radiance(sampler3D glow, const env_block env, vec3 d_M, vec3 t)
 {
     vec2 uv = environment_uv(environment_map_direction(env, d_M));
     int levels = textureSize(glow, 0).z;

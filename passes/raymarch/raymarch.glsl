@@ -39,7 +39,7 @@ struct march_result {
 };
 
 // tau - tau'
-vec3 march_forward_depth(march_result r)
+vec3 march_forward_depth(const march_result r)
 {
     // e^-tau may be too small for a float where e^-tau' is not; in one medium the depths are in proportion.
     vec3 depth = log(max(r.scaled_transmittance, 1e-37) / max(r.transmittance, 1e-37));
@@ -62,7 +62,7 @@ bool march_near_walls(vec3 p)
 }
 
 // How long the step after one through `m` may be.
-float march_next_step(march_medium m)
+float march_next_step(const march_medium m)
 {
     if (!raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS)) {
         return args.step;
@@ -111,7 +111,7 @@ vec3 march_tinted(vec3 J)
 }
 
 // Centroid of a step's weights, in steps.
-float march_centroid(march_medium m, float ds)
+float march_centroid(const march_medium m, float ds)
 {
     return step_centroid((0.5 * ds) * spectrum_mean(m.extinction + (raymarch_has(RAYMARCH_KERNELS)
                                                                         ? m.scaled_extinction
@@ -224,8 +224,8 @@ struct march_step {
 };
 
 // Light of suns and lamps that the step scatters towards the eye.
-vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], march_lamps lamps,
-                 march_medium unit, march_medium m, vec3 origin, vec3 direction, march_step b,
+vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], const march_lamps lamps,
+                 const march_medium unit, const march_medium m, vec3 origin, vec3 direction, const march_step b,
                  inout march_shadows shadow, inout vec3 single)
 {
     vec3 light = vec3(0.0);
@@ -257,7 +257,7 @@ vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_
 
 // Goes through the step of the length ds through m; `is`: false if there is none, and then ds is 0. All its light but
 // that of suns and lamps.
-march_step march_through(march_medium m, float ds, bool is, march_line line, vec2 near_lamps, inout march_state state)
+march_step march_through(const march_medium m, float ds, bool is, const march_line line, vec2 near_lamps, inout march_state state)
 {
     spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
     spectrum e = exp(-x), e_scaled = exp(-x_scaled);

@@ -12,7 +12,7 @@ struct march_lamps {
 
 // The picture shows means over pixels: a ray through the lamp itself has the mean of 1 / h over a disc as
 // large as the pixel, which is 2 / its radius.
-float march_least_h(march_lamps ray, float s)
+float march_least_h(const march_lamps ray, float s)
 {
     return 0.282 * (ray.pixel + ray.spread * (ray.start + s)) + 1e-6 * medium.voxel.x;
 }
@@ -36,7 +36,7 @@ struct march_cone {
 };
 
 // `across`: from the lamp to the nearest place of the ray's line.
-march_cone march_cone_of(light_block light, vec3 across, vec3 direction)
+march_cone march_cone_of(const light_block light, vec3 across, vec3 direction)
 {
     if (!raymarch_has(RAYMARCH_SPOTS)) {
         return march_cone(0.0, 1.0, 4.0, 4.0);
@@ -52,7 +52,7 @@ march_cone march_cone_of(light_block light, vec3 across, vec3 direction)
 
 // Integral of a lamp's lobe over what of the angles from a to b is between the cones, on the positive side, and
 // that of the angle times it; by three points of Gauss, as a spot's is a quartic but for the curvature of a cosine.
-vec2 march_falloff(light_block light, march_cone cone, float a, float b)
+vec2 march_falloff(const light_block light, const march_cone cone, float a, float b)
 {
     float from = max(a, cone.inner), width = max(min(b, cone.outer) - from, 0.0);
     vec2 sum = vec2(0.0);
@@ -64,7 +64,7 @@ vec2 march_falloff(light_block light, march_cone cone, float a, float b)
 }
 
 // Mean share of a lamp's intensity over the angles from x to y at it; `middle`: the centroid of that light.
-float march_share(light_block light, march_cone cone, float x, float y, out float middle)
+float march_share(const light_block light, const march_cone cone, float x, float y, out float middle)
 {
     const float TURN = 6.28318531;
     float shift = cone.middle + TURN * round((0.5 * (x + y) - cone.middle) / TURN);
@@ -85,7 +85,7 @@ struct march_lamp {
 const uint MARCH_LAMPS_KEPT = 2u;
 const uint march_lamps_kept = raymarch_num_lamps < MARCH_LAMPS_KEPT ? raymarch_num_lamps : MARCH_LAMPS_KEPT;
 
-march_lamp march_lamp_of(uint n, march_lamps ray)
+march_lamp march_lamp_of(uint n, const march_lamps ray)
 {
     march_lamp lamp;
     lamp.grid = radials[n];
@@ -95,7 +95,7 @@ march_lamp march_lamp_of(uint n, march_lamps ray)
     return lamp;
 }
 
-float march_lamp_step(march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float s)
+float march_lamp_step(const march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float s)
 {
     float least = TYN_INFINITY;
     vec3 p = ray.origin + s * ray.direction;
@@ -112,7 +112,7 @@ float march_lamp_step(march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float 
 
 // Light of a lamp that is scattered towards the eye `away` from it, r = length(away). `per_intensity`: what
 // a W/sr sends there as if nothing stood before it, 1/m^2.
-vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, march_medium m, vec3 away, float r,
+vec3 march_lamplight_seen(const march_lamp lamp, const march_lamps ray, const march_medium unit, const march_medium m, vec3 away, float r,
                           float per_intensity, spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
     vec3 irradiance = lamp.grid.light.color * per_intensity;
@@ -170,7 +170,7 @@ float march_inverse_square(float h2, float a, float b)
 // As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle: of what the lamp sees of it
 // and shines on. 1 / r^2 changes most: its integral is exact, (angle under which the lamp sees that part) / h, h the
 // ray's distance from it.
-vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
+vec3 march_lamplight(const march_lamp lamp, uint bit, const march_lamps ray, const march_medium unit, const march_medium m, float s, float ds,
                      float at, spectrum weight, spectrum weight_scaled, inout march_shadows shadow,
                      inout vec3 first)
 {

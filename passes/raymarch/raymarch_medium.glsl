@@ -74,7 +74,7 @@ struct march_medium {
     vec3 emission;
 };
 
-march_medium march_medium_of(medium_point point)
+march_medium march_medium_of(const medium_point point)
 {
     march_medium m;
     vec3 sigma_s = point.sigma_s;
@@ -96,7 +96,7 @@ march_medium march_medium_of(medium_point point)
     return m;
 }
 
-march_medium march_scale(march_medium unit, float density)
+march_medium march_scale(const march_medium unit, float density)
 {
     return march_medium(unit.scattering * density, unit.extinction * density,
                         unit.scaled_scattering * density, unit.scaled_extinction * density,
@@ -137,7 +137,7 @@ vec3 march_noise(vec3 p)
 }
 
 // At a texture coordinate; `unit` is the medium at texture value 1 (mode DENSITY).
-march_medium march_medium_at(march_medium unit, vec3 uvw)
+march_medium march_medium_at(const march_medium unit, vec3 uvw)
 {
     if (raymarch_has(RAYMARCH_NOISE)) {
         uvw += march_noise(uvw * medium.extent) / medium.extent;
@@ -160,7 +160,7 @@ march_medium march_medium_at(march_medium unit, vec3 uvw)
 }
 
 // Is there anything that absorbs, scatters or emits?
-bool march_any(march_medium m)
+bool march_any(const march_medium m)
 {
     float most = spectrum_max(m.extinction) + spectrum_max(m.hidden);
     if (raymarch_has(RAYMARCH_EMISSION)) {

@@ -20,7 +20,7 @@ struct march_near_steps {
 };
 
 // Where the ray is within reach of near lamp n.
-vec2 march_near_span(uint n, march_lamps ray)
+vec2 march_near_span(uint n, const march_lamps ray)
 {
     light_block light = radials[raymarch_num_lamps + n].light;
     vec3 away = ray.origin - light.position;
@@ -39,7 +39,7 @@ vec2 march_near_span(uint n, march_lamps ray)
     return span - along;
 }
 
-march_near march_near_of(march_lamps ray, float end)
+march_near march_near_of(const march_lamps ray, float end)
 {
     march_near near = march_near(uvec2(0u), vec2(TYN_INFINITY, -TYN_INFINITY));
     for (uint n = 0u; n < raymarch_num_near; n++) {
@@ -65,7 +65,7 @@ uint march_near_next(inout uvec2 lamps)
 
 // Light of a lamp in the piece from a to b of a step through m; `at` is the centroid of the step's weights, which are
 // per metre.
-vec3 march_near_piece(march_lamp lamp, march_lamps ray, march_medium unit, march_medium m, vec2 piece, float at,
+vec3 march_near_piece(const march_lamp lamp, const march_lamps ray, const march_medium unit, const march_medium m, vec2 piece, float at,
                       spectrum weight, spectrum weight_scaled, float inside, inout vec3 first)
 {
     vec3 away = ray.origin - lamp.grid.light.position;
@@ -93,7 +93,7 @@ vec3 march_near_piece(march_lamp lamp, march_lamps ray, march_medium unit, march
 }
 
 // Light of all near lamps in the steps that wait. `last`: that in the last of them.
-vec3 march_near_light(march_near near, march_lamps ray, march_medium unit, march_near_steps steps, vec3 medium0,
+vec3 march_near_light(const march_near near, const march_lamps ray, const march_medium unit, const march_near_steps steps, vec3 medium0,
                       vec3 medium1, float inside, inout vec3 first, out vec3 last)
 {
     vec3 sum = vec3(0.0);

@@ -52,7 +52,7 @@ bool is_finite(vec3 v)
 }
 
 // Where a ray is in the medium's box, from the eye on.
-vec2 pixel_span(camera_ray ray)
+vec2 pixel_span(const camera_ray ray)
 {
     vec3 beyond = vec3(0.0); // a periodic medium: so many periods that none sees farther
     if (raymarch_has(RAYMARCH_REPEAT)) {
@@ -80,7 +80,7 @@ struct pixel_ray {
 };
 
 // `where` in the pixel: to several surfaces rays go through the middle of their samples.
-pixel_ray ray_to(ivec2 pixel, vec2 where, surface_group group)
+pixel_ray ray_to(ivec2 pixel, vec2 where, const surface_group group)
 {
     pixel_ray to;
     to.ray = camera_ray_through(camera, vec2(pixel) + (group.share < 1.0 ? group.where : where));
@@ -96,8 +96,8 @@ pixel_ray ray_to(ivec2 pixel, vec2 where, surface_group group)
 
 // Adds what the ray brings, `r`, and what is behind the medium, with the group's share. `single`: of light that has
 // scattered once.
-void add_light(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, surface_group group, pixel_ray to,
-               march_result r, vec3 single)
+void add_light(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, const surface_group group, const pixel_ray to,
+               const march_result r, vec3 single)
 {
     sum.nearest = min(sum.nearest, to.surface);
     sum.met = sum.met || to.span.x < to.span.y;
@@ -164,7 +164,7 @@ void count_light(ivec2 pixel, vec3 radiance)
 }
 
 // `share` of the sum is the pixel's light.
-void store_pixel(ivec2 pixel, pixel_light sum, float share)
+void store_pixel(ivec2 pixel, const pixel_light sum, float share)
 {
     vec3 radiance = share * sum.radiance, transmittance = share * sum.transmittance;
     vec3 single = share * sum.single, multiple = share * sum.multiple;

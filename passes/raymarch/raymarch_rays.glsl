@@ -12,7 +12,7 @@ struct march_target {
     uint shapes_met;
 };
 
-void store_node(march_target target, pixel_ray to, march_result r, march_state state)
+void store_node(const march_target target, const pixel_ray to, const march_result r, const march_state state)
 {
     bool good = target.simple && is_finite(r.radiance) && is_finite(r.transmittance);
     if (state.steps > 0u) {
@@ -30,7 +30,7 @@ void store_node(march_target target, pixel_ray to, march_result r, march_state s
 
 // Adds the ray through `where` in the pixel, or stores that of a node. To samples of several surfaces it has the same way as far as
 // the first of them, and goes on through the middle of the others: these never see what is behind the first.
-void add_ray(inout pixel_light sum, march_target target, vec2 where, float footprint, surface_group group)
+void add_ray(inout pixel_light sum, const march_target target, vec2 where, float footprint, surface_group group)
 {
     float left = 1.0, start = 0.0;
     march_state state = march_start(target.is_node ? 0.5 : display_bayer(uvec2(target.pixel)));

@@ -50,12 +50,12 @@ bool in_window(ivec2 pixel)
 }
 
 // Has the pixel one ray, to one surface or none?
-bool is_simple(ivec2 pixel, surface_group group, out uint shapes_met)
+bool is_simple(ivec2 pixel, const surface_group group, out uint shapes_met)
 {
     return rays_of_pixel(pixel, shapes_met) == 1u && group.share > 0.999;
 }
 
-float sparse_nearness(pixel_ray to)
+float sparse_nearness(const pixel_ray to)
 {
     return to.surface < TYN_INFINITY ? 1.0 / max(to.surface, 1e-30) : 0.0;
 }
@@ -76,7 +76,7 @@ sparse_ray sparse_ray_of(ivec2 node)
 }
 
 // sum + weight * ray
-sparse_ray sparse_add(sparse_ray sum, float weight, sparse_ray ray)
+sparse_ray sparse_add(const sparse_ray sum, float weight, const sparse_ray ray)
 {
     return sparse_ray(sum.radiance + weight * ray.radiance, sum.transmittance + weight * ray.transmittance,
                       sum.scaled_transmittance + weight * ray.scaled_transmittance, sum.single + weight * ray.single);
@@ -84,7 +84,7 @@ sparse_ray sparse_add(sparse_ray sum, float weight, sparse_ray ray)
 
 // What is seen of the ray, or of a difference of rays, sum of all channels: before black, and before the radiance `behind`. A medium
 // before a radiance like its own cannot be seen, however its opacity changes, nor can a thin one before a bright radiance.
-vec2 sparse_seen(sparse_ray ray, vec3 behind)
+vec2 sparse_seen(const sparse_ray ray, vec3 behind)
 {
     return vec2(dot(abs(ray.radiance), vec3(1.0)), dot(abs(ray.radiance + ray.transmittance * behind), vec3(1.0)));
 }
@@ -94,7 +94,7 @@ const sparse_ray SPARSE_NONE = sparse_ray(vec3(0.0), vec3(0.0), vec3(0.0), vec3(
 // The mean second difference along `way` at the nodes a (`node`) and b (`node + way`), of those whose outer node is known and lies
 // on the same surface, in the same shapes: beyond their edges the light tells nothing of the cell's. `nearness`: of a and b.
 // `size`: the larger of the two as it is seen (sparse_seen), or infinity if none is known.
-sparse_ray sparse_second_difference(ivec2 node, ivec2 way, sparse_ray a, sparse_ray b, vec2 nearness, float shapes_met, vec3 behind,
+sparse_ray sparse_second_difference(ivec2 node, ivec2 way, const sparse_ray a, const sparse_ray b, vec2 nearness, float shapes_met, vec3 behind,
                                     out vec2 size)
 {
     sparse_ray sum = SPARSE_NONE;
@@ -154,7 +154,7 @@ sparse_cell sparse_cell_of(ivec2 node, int stride)
 
 // `cubic` in the middle between nodes, but `linear` in channels where a cubic leaves the values that radiance and transmittance
 // may have: beside the edge of a medium. All of a channel changes: light and what it hides keep their sum.
-sparse_ray sparse_valid(sparse_ray cubic, sparse_ray linear)
+sparse_ray sparse_valid(const sparse_ray cubic, const sparse_ray linear)
 {
     bvec3 off = lessThan(min(cubic.radiance, min(cubic.transmittance, cubic.scaled_transmittance)), vec3(0.0));
     off = bvec3(ivec3(off) | ivec3(greaterThan(max(cubic.transmittance, cubic.scaled_transmittance), vec3(1.0))));
@@ -164,7 +164,7 @@ sparse_ray sparse_valid(sparse_ray cubic, sparse_ray linear)
 
 // Rays in the middle of the cell's first row, of its first column, and of the cell, by cubics along rows and columns. `error`:
 // a bound of what linear interpolation is off by, relative to what is seen.
-void sparse_interpolate(sparse_cell cell, out sparse_ray middle[3], out float error)
+void sparse_interpolate(const sparse_cell cell, out sparse_ray middle[3], out float error)
 {
     ivec2 right = ivec2(cell.stride, 0), down = ivec2(0, cell.stride);
     vec2 sizes[4];
@@ -188,13 +188,13 @@ void sparse_interpolate(sparse_cell cell, out sparse_ray middle[3], out float er
 }
 
 // 1 / distance of surfaces is linear in the picture of a plane. `t`: place in the cell, 0 to 1.
-float sparse_nearness_between(sparse_cell cell, vec2 t)
+float sparse_nearness_between(const sparse_cell cell, vec2 t)
 {
     return mix(mix(cell.nearness[0], cell.nearness[1], t.x), mix(cell.nearness[2], cell.nearness[3], t.x), t.y);
 }
 
 // Is a sun behind the cell? It is far brighter than what is around.
-bool sees_sun(sparse_cell cell)
+bool sees_sun(const sparse_cell cell)
 {
     float across = 2.0 * float(cell.stride);
     if (!raymarch_has(RAYMARCH_BACKGROUND) || environment.has_map == 0u) {
@@ -213,7 +213,7 @@ bool sees_sun(sparse_cell cell)
 }
 
 // Has the pixel one ray, and is its length what the cell's nodes say?
-bool is_between(sparse_cell cell, ivec2 pixel, surface_group group)
+bool is_between(const sparse_cell cell, ivec2 pixel, const surface_group group)
 {
     if (!raymarch_has(RAYMARCH_SURFACE | RAYMARCH_HOST_DEPTH | RAYMARCH_SUPERSAMPLE)) {
         return true; // nothing ends or splits a ray
@@ -295,7 +295,7 @@ void fill_nodes(ivec2 node)
 }
 
 // Stores a pixel that has `ray` before its surface; true if it meets the medium.
-bool store_interpolated(ivec2 pixel, surface_group group, sparse_ray ray)
+bool store_interpolated(ivec2 pixel, const surface_group group, const sparse_ray ray)
 {
     march_result r = march_result(ray.radiance, ray.transmittance, ray.scaled_transmittance);
     pixel_light sum = pixel_light_none();

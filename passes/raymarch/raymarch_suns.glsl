@@ -40,7 +40,7 @@ struct march_sun {
 #endif
 };
 
-march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
+march_sun march_sun_of(uint n, const march_medium unit, vec3 origin, vec3 direction)
 {
     light_block light = lights[beams[n].light];
     vec3 turn = direction + light.direction;
@@ -78,7 +78,7 @@ march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
 // Light of one sun that is scattered towards the eye at distance s of the ray. `weight` and
 // `weight_scaled`: integrals of e^-tau and e^-tau' over the step, m. `first`: the part that has
 // scattered once, W/(m^2 sr), as the result.
-vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, float s,
+vec3 march_sunlight(const march_sun sun, const march_medium unit, const march_medium m, vec3 p, float s,
                     spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
     beam_place place;
@@ -150,7 +150,7 @@ float march_shadow_piece()
 }
 
 // `by`: SHADOW_LIT_BY_*.
-bool march_sees(bool sun, march_map m, float s, uint by)
+bool march_sees(bool sun, const march_map m, float s, uint by)
 {
     vec3 q = m.from + s * m.along;
     return ((sun ? shadow_lit_by(shadow_atlas, shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
@@ -163,7 +163,7 @@ struct march_lit {
 };
 
 // `bit`: of the light in `shadow`.
-march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
+march_lit march_lit_of(bool sun, const march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
     float part = ds / max(ceil(ds / march_shadow_piece() - 1e-3), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
     float sum = 0.0, moment = 0.0;

@@ -20,7 +20,7 @@ const int TRIES = 12;
 const float NEXT = 0.84; // as far as the place before
 
 // The room that the ray of texel `at` of a VPL's map tells of; TYN_ROOMS_ANY: none.
-uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int side)
+uint told_by(const lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int side)
 {
     vec3 d = frame * normalize(vpl_map_direction(vec2(at) / float(side - 1)));
     float end = min(texelFetch(vpl_distances_tex, corner + at, 0).r, 1e4 * box.dx);

@@ -58,7 +58,7 @@ uint triangle_of(uint block, float at)
 }
 
 // Of direction k, W/m^2 across the surface; `cosine` of light and normal.
-vec3 sky_from(uint k, shadow_surface s, out float cosine)
+vec3 sky_from(uint k, const shadow_surface s, out float cosine)
 {
     vec3 towards = -ordinates.list[k].direction; // mean cosine: of the region about it
     vec3 light = ordinates.list[k].mean_cosine * max(ordinates.list[k].irradiance, vec3(0.0));
@@ -87,7 +87,7 @@ const uint FEW = 16u; // directions
 
 // Irradiance of the front and of the back of a place, W/m^2. Maps let a little light in beside the edges of walls, and what is in a closed
 // room would shine on all of it: what few directions light, rays must confirm.
-void sky_on(shadow_surface s, vec3 world, uint triangle, out vec3 sides[2])
+void sky_on(const shadow_surface s, vec3 world, uint triangle, out vec3 sides[2])
 {
     uint count = min(ordinates.count, uint(TYN_ORDINATES_MAX)); // these are the directions
     uint lit[2] = uint[2](0u, 0u), by[2][FEW];

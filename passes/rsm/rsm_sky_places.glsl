@@ -27,18 +27,18 @@ rsm_sky_piece rsm_sky_whole(vec3 a, vec3 b, vec3 c)
     return rsm_sky_piece(at_a ? a : at_b ? b : c, at_a ? b : at_b ? c : a, at_a ? c : at_b ? a : b);
 }
 
-rsm_sky_piece rsm_sky_half(rsm_sky_piece t, bool second)
+rsm_sky_piece rsm_sky_half(const rsm_sky_piece t, bool second)
 {
     return rsm_sky_piece(0.5 * (t.from + t.to), second ? t.apex : t.from, second ? t.to : t.apex);
 }
 
-vec3 rsm_sky_middle(rsm_sky_piece t)
+vec3 rsm_sky_middle(const rsm_sky_piece t)
 {
     return (t.apex + t.from + t.to) * (1.0 / 3.0);
 }
 
 // Is all of a piece about as near as its middle?
-bool rsm_sky_even(rsm_sky_piece t)
+bool rsm_sky_even(const rsm_sky_piece t)
 {
     float size = near_box_size(args.near_lo, args.near_hi);
     float away = near_box_away(rsm_sky_middle(t), args.near_lo, args.near_hi);

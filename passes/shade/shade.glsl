@@ -91,13 +91,13 @@ vec3 shade_position(ivec2 texel, float distance)
     return ray.origin + distance * ray.direction;
 }
 
-vec3 shade_left(beam_tau tau)
+vec3 shade_left(const beam_tau tau)
 {
     return exp(-(tau.a + tau.p));
 }
 
 // Cosine at which light from `towards` (unit) arrives; none where it comes from behind the facet.
-float shade_cosine(shade_point p, vec3 towards)
+float shade_cosine(const shade_point p, vec3 towards)
 {
     return dot(p.facet, towards) > 0.0 ? max(dot(p.normal, towards), 0.0) : 0.0;
 }
@@ -109,7 +109,7 @@ struct shade_footprint {
     float slope; // cosine of the view and the plane's normal
 };
 
-shade_footprint shade_footprint_of(shade_point p, vec4 part)
+shade_footprint shade_footprint_of(const shade_point p, vec4 part)
 {
     vec3 ray = p.position - camera.origin;
     vec2 size = camera_pixel(camera) * (part.zw - part.xy);
@@ -121,7 +121,7 @@ shade_footprint shade_footprint_of(shade_point p, vec4 part)
 // A point for shadows. Its plane is one triangle's, but samples of a pixel, and texels of a map, show others beside
 // that, if the surface is curved: then normals for shading turn away from the facet's, by half the angle to the next
 // triangle where that begins. Not in edges of boxes, even if their corners have mean normals.
-shadow_surface shade_shadowed(shade_point p, shade_footprint foot)
+shadow_surface shade_shadowed(const shade_point p, const shade_footprint foot)
 {
     float turned = length(cross(p.facet, p.normal));
     float bend = 2.0 * min(turned, max(1.4 - 2.0 * turned, 0.0));
@@ -161,7 +161,7 @@ float shade_around(vec4 around, vec3 normal)
 
 // `around[n]`: from where what the medium scattered forward of sun n comes, as shade_forward.comp has it, if `spread`.
 // Else it comes with what was not scattered. `sharp`: what comes straight; `soft`: what comes from around.
-vec3 shade_suns(shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool sharp, bool soft)
+vec3 shade_suns(const shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool sharp, bool soft)
 {
     vec3 sum = vec3(0.0);
     shadow_surface surface = shade_shadowed(p, shade_footprint_of(p, part));
@@ -202,7 +202,7 @@ light_block shade_lamp_of(uint n)
 }
 
 // What is left of a local light at a point that may be outside the medium's box.
-vec3 shade_through_radial(radial_grid grid, vec3 p)
+vec3 shade_through_radial(const radial_grid grid, vec3 p)
 {
     vec3 o = grid.light.position, away = p - o;
     float r = length(away);
@@ -217,7 +217,7 @@ const float SHADE_NEAR = 8.0; // widths; at lamps farther away the point's irrad
 const int SHADE_SPOT_PARTS = 16; // of a footprint, along each side
 
 // Where the plane of p is seen in the picture; what is beyond its horizon, or nearly, is drawn nearer.
-vec3 shade_seen(shade_point p, vec2 pixel)
+vec3 shade_seen(const shade_point p, vec2 pixel)
 {
     camera_ray ray = camera_ray_through(camera, pixel);
     vec3 way = p.position - ray.origin;
@@ -249,7 +249,7 @@ float shade_triangle(vec3 a, vec3 b, vec3 c, float h, out float twice_area)
 // Mean irradiance of a lamp, per intensity, over the footprint of p. What a lamp sends through a part of a plane is its
 // intensity times the solid angle under which it sees that part: exact, however near it is. No more
 // light arrives than it sends.
-float shade_lamp_on(shade_point p, shade_footprint foot, light_block lamp)
+float shade_lamp_on(const shade_point p, const shade_footprint foot, const light_block lamp)
 {
     vec3 position = lamp.position;
     float unit = 1.0 / foot.width, h = dot(position - p.position, p.facet);
@@ -282,7 +282,7 @@ vec2 shade_border(vec2 t, vec2 middle)
 }
 
 // ... of a lamp whose lobe may be narrower than the footprint, over parts of it.
-float shade_lamp_near(shade_point p, shade_footprint foot, light_block lamp)
+float shade_lamp_near(const shade_point p, const shade_footprint foot, const light_block lamp)
 {
     vec3 position = lamp.position;
     bool close = distance(position, p.position) < 2.0 * foot.width;
@@ -301,7 +301,7 @@ float shade_lamp_near(shade_point p, shade_footprint foot, light_block lamp)
     return sum;
 }
 
-vec3 shade_lamp(shade_point p, shade_footprint foot, uint n)
+vec3 shade_lamp(const shade_point p, const shade_footprint foot, uint n)
 {
     light_block lamp = shade_lamp_of(n);
     vec3 way = lamp.position - p.position;
@@ -325,7 +325,7 @@ vec3 shade_lamp(shade_point p, shade_footprint foot, uint n)
 }
 
 // `part` of the picture that p stands for: from xy to zw, pixels.
-vec3 shade_lamps(shade_point p, vec4 part)
+vec3 shade_lamps(const shade_point p, vec4 part)
 {
     vec3 sum = vec3(0.0);
     if (!shade_has(SHADE_LAMPS)) {

@@ -67,13 +67,13 @@ mat3 frame_of(vec3 n)
 }
 
 // The lobe of what scatters on the way, by what the scaled depth leaves out.
-float lobe_of(beam_tau tau)
+float lobe_of(const beam_tau tau)
 {
     vec3 kept = tau.p / max(tau.s, vec3(1e-20));
     return delta_lobe(clamp(1.0 - (kept.r + kept.g + kept.b) / 3.0, 0.0, 0.98));
 }
 
-vec4 forward_light(uint n, lattice_box box, ivec3 c)
+vec4 forward_light(uint n, const lattice_box box, ivec3 c)
 {
     const vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
     vec3 p = lattice_to_m(box, vec3(c) + 0.5);

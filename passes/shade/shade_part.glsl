@@ -18,7 +18,7 @@ struct shade_part {
     bool aside;      // of some places of the pattern the neighbours on one side only are on this piece
 };
 
-uvec4 shade_pack(shade_part p)
+uvec4 shade_pack(const shade_part p)
 {
     uvec2 colour = colour_pack(p.irradiance);
     return uvec4(colour.x, colour.y | (p.whole ? 1u << 30 : 0u) | (p.near ? 1u << 31 : 0u),

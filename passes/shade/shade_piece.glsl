@@ -21,7 +21,7 @@ const float PI = 3.14159265358979;
 #include "shade_outside.glsl"
 
 // Towards the camera, W/(m^2 sr).
-vec3 shade_radiance(gbuffer_colours colours, vec3 irradiance)
+vec3 shade_radiance(const gbuffer_colours colours, vec3 irradiance)
 {
     return colours.emission + colours.albedo * irradiance / PI;
 }
@@ -46,7 +46,7 @@ vec3 clamped_light(vec3 irradiance)
 
 // Is a place where the lattice has light for it? Also where it is in a wall of the lattice, which may be up to half a cell
 // outside: the link that it cuts leads there.
-bool lattice_lights(lattice_box box, vec3 x)
+bool lattice_lights(const lattice_box box, vec3 x)
 {
     vec3 beyond = x - clamp(x, vec3(0.0), vec3(box.dims)), off = abs(beyond);
     float most = max(off.x, max(off.y, off.z));
@@ -61,7 +61,7 @@ bool lattice_lights(lattice_box box, vec3 x)
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward.
-vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
+vec3 light_of_lattice(const shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
 {
     inside = false;
     vec3 sky = shade_has(SHADE_SKY) ? PI * environment.sky : vec3(0.0);
@@ -111,7 +111,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
 }
 
 // Is p where the lattice has light?
-bool inside_lattice(shade_point p)
+bool inside_lattice(const shade_point p)
 {
     lattice_box box = shade_lattice();
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
@@ -119,7 +119,7 @@ bool inside_lattice(shade_point p)
 }
 
 // Light that changes little from pixel to pixel, but for that of VPLs.
-vec3 smooth_light_at(shade_point p)
+vec3 smooth_light_at(const shade_point p)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
@@ -128,7 +128,7 @@ vec3 smooth_light_at(shade_point p)
 }
 
 // All light but that of VPLs. `part` of the picture that p stands for: from xy to zw, pixels.
-vec3 irradiance_at(shade_point p, vec4 part)
+vec3 irradiance_at(const shade_point p, vec4 part)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
@@ -138,7 +138,7 @@ vec3 irradiance_at(shade_point p, vec4 part)
 }
 
 // All light of which shade_smooth.comp makes none.
-vec3 sharp_light_at(shade_point p, vec4 part)
+vec3 sharp_light_at(const shade_point p, vec4 part)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool spread = shade_has(SHADE_SPREAD) && inside_lattice(p);
@@ -150,7 +150,7 @@ const float SHADE_ALIKE = 0.001, SHADE_ALIKE_BESIDE = 0.01;
 
 // Smooth light of the four blocks whose middles are around the place `at` of the picture (pixels): of those on the same
 // piece of surface, in proportion to how near they are, or of the one that is most like p. `alone`: that will not do.
-vec3 smooth_light_around(shade_point p, vec2 at, out bool alone)
+vec3 smooth_light_around(const shade_point p, vec2 at, out bool alone)
 {
     vec2 x = at / float(shade_step) - 0.5, first = floor(x), f = x - first;
     ivec2 last = shade_blocks() - 1;
@@ -179,7 +179,7 @@ vec3 smooth_light_around(shade_point p, vec2 at, out bool alone)
 // Of the nine blocks around the place `at` of the picture (pixels): of those on the same plane, the nearer the more. Not of
 // the one that is most like p: of several on one plane that is a matter of rounding, which changes with the scale.
 // `alone`: that will not do.
-vec3 smooth_light_beside(shade_point p, vec2 at, out bool alone)
+vec3 smooth_light_beside(const shade_point p, vec2 at, out bool alone)
 {
     bool near = false;
     vec2 x = at / float(shade_step);

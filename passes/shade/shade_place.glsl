@@ -30,7 +30,7 @@ shade_point shade_place(ivec2 block, out shade_part part)
 }
 
 // Does the light of VPLs of which shade_vpls found `nearest` change within the pattern around a block?
-bool shade_near(shade_point p, ivec2 block, float nearest)
+bool shade_near(const shade_point p, ivec2 block, float nearest)
 {
     float reach = SHADE_VPL_NEAR * shade_footprint_of(p, vec4(block, block + 1) * float(shade_step)).width / float(shade_step);
     return nearest < reach * reach;

@@ -24,7 +24,7 @@ bool is_listed()
 }
 
 // Samples of the pixel that are to be shaded: bits. Of those that show no surface the picture gets 0.
-uint samples_shown(ivec2 pixel, gbuffer_facing seen, bool listed)
+uint samples_shown(ivec2 pixel, const gbuffer_facing seen, bool listed)
 {
     uint shown = 0u;
     for (int k = 0; k < shade_samples * shade_samples; k++) {
@@ -39,7 +39,7 @@ uint samples_shown(ivec2 pixel, gbuffer_facing seen, bool listed)
 }
 
 // Smooth light that is looked up. `lone`: no place tells of it.
-vec3 smooth_light_found(shade_point p, ivec2 pixel, vec2 middle, bool listed, out bool lone)
+vec3 smooth_light_found(const shade_point p, ivec2 pixel, vec2 middle, bool listed, out bool lone)
 {
     lone = false;
     if (shade_step > 1) {

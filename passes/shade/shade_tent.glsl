@@ -8,7 +8,7 @@
 
 // The sum at `block`, whose own part is `here`; `step` to its neighbours. Not whole where most places of the pattern
 // have no block on this surface nearby.
-shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
+shade_part shade_tent(ivec2 block, ivec2 step, const shade_part here)
 {
     // How far a neighbour d steps off is from the facet's plane: a d + b (z' - z) + c z' d, z along the axis.
     vec2 size = camera_whole(camera) / float(shade_step);

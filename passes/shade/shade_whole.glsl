@@ -1,7 +1,7 @@
 // shade_whole.glsl -- the point that a pixel on one piece of surface is shaded at.
 #include "shade.glsl"
 
-shade_point shade_whole(ivec2 pixel, gbuffer_facing seen)
+shade_point shade_whole(ivec2 pixel, const gbuffer_facing seen)
 {
     ivec2 corner = pixel * shade_samples;
     // In the middle of the samples, but on the plane of the one whose facet is to be in a shadow or not.

@@ -19,7 +19,7 @@
 // be right in the mean; closer than 0.9 R that is bounded, as so much light would change faster than pixels do.
 const float VPL_CUT = 12.0 * 0.129, VPL_CUT_NEAR = 1.35;
 
-float vpl_irradiance(light_block light, vec3 p, vec3 n)
+float vpl_irradiance(const light_block light, vec3 p, vec3 n)
 {
     vec3 away = p - light.position;
     float h = dot(away, light.direction), towards = -dot(away, n), facing = -dot(n, light.direction);

@@ -27,7 +27,7 @@ struct walls_spot {
     uint behind;   // bit k: the place is behind plane k as seen from the cell's centre
 };
 
-walls_spot walls_spot_of(lattice_box box, vec3 p, vec3 n, float lift)
+walls_spot walls_spot_of(const lattice_box box, vec3 p, vec3 n, float lift)
 {
     walls_spot s;
     s.p = p;
@@ -43,7 +43,7 @@ walls_spot walls_spot_of(lattice_box box, vec3 p, vec3 n, float lift)
 }
 
 // What cell q counts by itself; negative if it is behind walls.
-float walls_share(lattice_box box, walls_spot s, ivec3 q)
+float walls_share(const lattice_box box, const walls_spot s, ivec3 q)
 {
     vec3 centre = walls_centre(box, q);
     int between = bitCount(walls_behind(s.planes, centre) ^ s.behind) +
@@ -61,7 +61,7 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
 // light goes away from the surface than four moments can tell. `others`: the
 // same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light. `room` of the
 // surface, or TYN_ROOMS_ANY.
-vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
+vec3 walls_irradiance_at(sampler3D moments, const lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
                          uint num_others, uint room, out vec4 others[WALLS_OTHERS])
 {
     vec3 irradiance = vec3(0.0);

@@ -45,7 +45,7 @@ vpl_block vpl_block_at(uint index)
     return block;
 }
 
-ivec2 vpl_texel(vpl_block block, uint element)
+ivec2 vpl_texel(const vpl_block block, uint element)
 {
     return ivec2(block.map.offset + hilbert_texel(block.map.texels, block.before * VPL_BLOCK + element));
 }
@@ -62,7 +62,7 @@ vec3 vpl_corner(uint vertex)
 }
 
 // Power that leaves an element, W.
-vec3 vpl_flux(vpl_block block, uint element)
+vec3 vpl_flux(const vpl_block block, uint element)
 {
     if (block.index < plan.front) {
         return texelFetch(rsm_flux_tex, vpl_texel(block, element), 0).rgb;
@@ -80,7 +80,7 @@ vec3 vpl_flux(vpl_block block, uint element)
     return emission * (VPL_PI * 0.5 * length(cross(b - a, c - a)));
 }
 
-bool vpl_of_sky(vpl_block block)
+bool vpl_of_sky(const vpl_block block)
 {
     return block.index < plan.front && block.map.light >= TYN_RSM_SKY;
 }
@@ -96,7 +96,7 @@ const float VPL_GREY = 0.3; // albedo: docs/measurements.md, "Constants"
 // What an element is chosen by, W: its power. Under the sky the geometric mean of that and of the power that its area would send on
 // in grey and open: dark corners have places, too. It falls with the third power of the distance to the box that pictures are of, as
 // what a ground sends to a wall of the box's size does. Else a ground of a kilometre had all VPLs and the box one below it.
-float vpl_weight(vpl_block block, uint element, float power, vpl_args args)
+float vpl_weight(const vpl_block block, uint element, float power, const vpl_args args)
 {
     if (power <= 0.0 || !vpl_of_sky(block)) {
         return power;
@@ -135,7 +135,7 @@ vec3 vpl_on_triangle(vec3 a, vec3 b, vec3 c, float t)
 }
 
 // Piece k of `pieces` of the part [from, to) of an element.
-vpl_piece vpl_piece_of(vpl_block block, uint element, vec2 part, uint k, uint pieces)
+vpl_piece vpl_piece_of(const vpl_block block, uint element, vec2 part, uint k, uint pieces)
 {
     vpl_piece piece;
     if (block.index < plan.front) {
@@ -159,7 +159,7 @@ vpl_piece vpl_piece_of(vpl_block block, uint element, vec2 part, uint k, uint pi
     return piece;
 }
 
-uint vpl_pieces(vpl_block block)
+uint vpl_pieces(const vpl_block block)
 {
     return block.index < plan.front ? 1u : 8u;
 }

@@ -99,7 +99,7 @@ vec3 depth_from_light(uint light, vec3 p)
 }
 
 // The part of an element that is in the stratum: from where, to where, and its weight.
-vec3 part_of(uint block, uint element, vpl_stratum stratum)
+vec3 part_of(uint block, uint element, const vpl_stratum stratum)
 {
     uint at = block * VPL_BLOCK + element;
     float before = element > 0u ? weights[at - 1u] : 0.0, after = weights[at];
@@ -128,7 +128,7 @@ float alike(float doublings)
 }
 
 // log2(weight / power) of an element.
-float weight_of_power(vpl_block block, uint element)
+float weight_of_power(const vpl_block block, uint element)
 {
     if (!vpl_of_sky(block)) {
         return 0.0;

@@ -39,7 +39,7 @@ vec3 albedo_at(uint i, vec3 p, vec3 d)
 }
 
 // In M, m, with the centre on its positive side.
-vec4 plane_of(uint i, ivec3 c, lattice_box box)
+vec4 plane_of(uint i, ivec3 c, const lattice_box box)
 {
     walls_triangle t = walls_triangle_at(i);
     vec3 n = normalize(t.normal);

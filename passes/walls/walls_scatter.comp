@@ -70,7 +70,7 @@ starts starts_of(vec3 least, vec3 most)
     return s;
 }
 
-ivec3 count_of(starts s, ivec3 d)
+ivec3 count_of(const starts s, ivec3 d)
 {
     return mix(mix(s.count, s.count_down, lessThan(d, ivec3(0))), s.count_up, greaterThan(d, ivec3(0)));
 }

@@ -95,7 +95,7 @@ beam_ray beam_ray_of(uint sun, vec3 origin, vec3 direction)
     return ray;
 }
 
-beam_place beam_ray_at(beam_ray ray, float s)
+beam_place beam_ray_at(const beam_ray ray, float s)
 {
     vec3 lengths = ray.length0 + s * ray.length1;
     float inside = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
@@ -103,7 +103,7 @@ beam_place beam_ray_at(beam_ray ray, float s)
                          ray.even, ray.edges);
 }
 
-vec3 beam_fetch(sampler3D tex, beam_place place)
+vec3 beam_fetch(sampler3D tex, const beam_place place)
 {
     vec3 depth = place.scale * textureLod(tex, place.uvw, 0.0).rgb;
     if (place.subtract) {
@@ -113,7 +113,7 @@ vec3 beam_fetch(sampler3D tex, beam_place place)
 }
 
 // Either mode.
-beam_tau beam_depth_at(beam_place place)
+beam_tau beam_depth_at(const beam_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return beam_of_column(beam_fetch(column_tex, place).r);

@@ -46,7 +46,7 @@ struct radial_place {
 };
 
 // `away`: from the light to a point in the box; r = its length.
-radial_place radial_place_in(radial_grid grid, vec3 away, float r)
+radial_place radial_place_in(const radial_grid grid, vec3 away, float r)
 {
     vec3 d = vec3(dot(grid.to_map[0], away), dot(grid.to_map[1], away), dot(grid.to_map[2], away));
     float way = log(1.0 + max(r - grid.begin, 0.0) * grid.inverse_near);
@@ -70,7 +70,7 @@ radial_place radial_place_of(uint n, vec3 away, float r)
 }
 
 // Share of the light's intensity that goes along `away`, r = its length.
-float radial_share_of(light_block light, vec3 away, float r)
+float radial_share_of(const light_block light, vec3 away, float r)
 {
     return light_lobe(light, dot(away / max(r, 1e-20), light.direction));
 }
@@ -90,7 +90,7 @@ float radial_mean_inverse_square(float r2, float d2)
 // Of most lamps only the light that is near them is followed exactly, with the weight (1 - (r / reach)^4)^2; the rest,
 // which is smooth even at the lamp, is left to cells. A narrow beam is followed until it is as wide as the reach
 // of lamps that shine all around, m.
-float radial_reach(light_block light, float around)
+float radial_reach(const light_block light, float around)
 {
     float c = max(light.cos_outer, 0.0);
     return around * inversesqrt(max(1.0 - c * c, 1e-4));
@@ -125,13 +125,13 @@ float radial_visibility(uint n, vec3 p)
 #endif
 
 // Mode DENSITY: column density, m times texture value.
-float radial_column(radial_place place)
+float radial_column(const radial_place place)
 {
     return place.inside * textureLod(radial_column_tex, place.uvw, 0.0).r;
 }
 
 // Either mode.
-beam_tau radial_tau(radial_place place)
+beam_tau radial_tau(const radial_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return beam_of_column(radial_column(place));

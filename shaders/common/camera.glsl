@@ -10,38 +10,38 @@ struct camera_ray {
 
 // What is of parallel rays, or of rays that meet in the eye: both are computed, and one is taken. A branch on nothing
 // but values of a uniform buffer makes lavapipe compile the kernel anew when these change: whenever the camera moves.
-float camera_select(camera_block camera, float parallel, float perspective)
+float camera_select(const camera_block camera, float parallel, float perspective)
 {
     return mix(perspective, parallel, camera.orthographic != 0u);
 }
 
-vec3 camera_select(camera_block camera, vec3 parallel, vec3 perspective)
+vec3 camera_select(const camera_block camera, vec3 parallel, vec3 perspective)
 {
     return mix(perspective, parallel, bvec3(camera.orthographic != 0u));
 }
 
 // Pixels of the picture, or of that of which it is a part.
-vec2 camera_whole(camera_block camera)
+vec2 camera_whole(const camera_block camera)
 {
     return vec2(camera.size + camera.beyond);
 }
 
 // Width and height of a pixel, at 1 m (perspective) or in m.
-vec2 camera_pixel(camera_block camera)
+vec2 camera_pixel(const camera_block camera)
 {
     return 2.0 * vec2(camera.half_width, camera.half_height) / camera_whole(camera);
 }
 
 // How far image position `pixel` (column + u, row + v), row 0 on top, (u, v) in [0, 1)^2, is beside the axis: at 1 m
 // (perspective) or in m.
-vec3 camera_across(camera_block camera, vec2 pixel)
+vec3 camera_across(const camera_block camera, vec2 pixel)
 {
     vec2 s = 2.0 * (pixel + vec2(camera.corner)) / camera_whole(camera) - 1.0;
     return (s.x + camera.shift.x) * camera.half_width * camera.right + (camera.shift.y - s.y) * camera.half_height * camera.up;
 }
 
 // Ray through an image position.
-camera_ray camera_ray_through(camera_block camera, vec2 pixel)
+camera_ray camera_ray_through(const camera_block camera, vec2 pixel)
 {
     vec3 across = camera_across(camera, pixel);
     return camera_ray(camera_select(camera, camera.origin + across, camera.origin),
@@ -81,12 +81,12 @@ vec2 ray_sphere(vec3 origin, vec3 direction, float r)
 }
 
 // M -> local unit box of a shape.
-vec3 shape_vector(shape_block shape, vec3 v)
+vec3 shape_vector(const shape_block shape, vec3 v)
 {
     return vec3(dot(shape.rows[0].xyz, v), dot(shape.rows[1].xyz, v), dot(shape.rows[2].xyz, v));
 }
 
-vec3 shape_point(shape_block shape, vec3 p)
+vec3 shape_point(const shape_block shape, vec3 p)
 {
     return shape_vector(shape, p) + vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
 }

@@ -26,18 +26,18 @@ lattice_box lattice_box_of(vec3 extent, ivec3 dims)
 }
 
 // M -> cell units: cell i spans [i, i + 1], its centre is i + 0.5.
-vec3 lattice_from_m(lattice_box box, vec3 p)
+vec3 lattice_from_m(const lattice_box box, vec3 p)
 {
     return (p - box.origin) / box.dx;
 }
 
-vec3 lattice_to_m(lattice_box box, vec3 cell)
+vec3 lattice_to_m(const lattice_box box, vec3 cell)
 {
     return box.origin + cell * box.dx;
 }
 
 // Of a cell in buffers: x is fastest.
-uint lattice_index(lattice_box box, ivec3 cell)
+uint lattice_index(const lattice_box box, ivec3 cell)
 {
     return uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
 }

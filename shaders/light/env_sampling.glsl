@@ -10,7 +10,7 @@
 const float ENV_SQUARE_TO_SPHERE = 19.7392088; // 2 pi^2
 
 // pdf per steradian of drawing `d_M` (unit, outwards).
-float env_pdf(env_block env, vec3 d_M)
+float env_pdf(const env_block env, vec3 d_M)
 {
     vec3 d = environment_map_direction(env, d_M);
     vec2 uv = environment_uv(d);
@@ -20,7 +20,7 @@ float env_pdf(env_block env, vec3 d_M)
     return env_cells[cell.y * size.x + cell.x].density / (ENV_SQUARE_TO_SPHERE * sin_theta);
 }
 
-vec3 env_sample(env_block env, uvec4 bits, out float pdf)
+vec3 env_sample(const env_block env, uvec4 bits, out float pdf)
 {
     uvec2 size = uvec2(env_table.width, env_table.height);
     uint high, low;

@@ -14,14 +14,14 @@ vec2 environment_uv(vec3 d)
     return vec2(0.5 + azimuth * 0.5 * TYN_INV_PI, acos(clamp(d.y, -1.0, 1.0)) * TYN_INV_PI);
 }
 
-vec3 environment_map_direction(env_block env, vec3 d_M)
+vec3 environment_map_direction(const env_block env, vec3 d_M)
 {
     return vec3(dot(env.rows[0].xyz, d_M), dot(env.rows[1].xyz, d_M), dot(env.rows[2].xyz, d_M));
 }
 
 // Radiance, W/(m^2 sr), that arrives from direction `d_M` (unit, outwards). `map` wraps in x and is
 // clamped in y.
-vec3 environment_radiance(env_block env, sampler2D map, vec3 d_M)
+vec3 environment_radiance(const env_block env, sampler2D map, vec3 d_M)
 {
     if (env.has_map == 0u) {
         return env.radiance;

@@ -10,17 +10,17 @@
 
 layout(set = 0, binding = SHADOWS_AT) uniform sampler2D shadow_atlas;
 
-float shadow_all_lit(shadow_place place)
+float shadow_all_lit(const shadow_place place)
 {
     return (shadow_lit_by(shadow_atlas, place) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
 }
 
-uint shadow_sun_lights(shadow_light l, vec3 p)
+uint shadow_sun_lights(const shadow_light l, vec3 p)
 {
     return shadow_lit_by(shadow_atlas, shadow_place_sun(l, shadow_frame(l, p)));
 }
 
-float shadow_visibility_sun_of(shadow_light l, vec3 p)
+float shadow_visibility_sun_of(const shadow_light l, vec3 p)
 {
     return (shadow_sun_lights(l, p) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
 }
@@ -31,7 +31,7 @@ float shadow_visibility_sun(uint light, vec3 p)
 }
 
 // `q` in the lamp's frame.
-uint shadow_lamp_lights_at(shadow_light l, vec3 q)
+uint shadow_lamp_lights_at(const shadow_light l, vec3 q)
 {
     bool cube = l.kind == TYN_SHADOW_CUBE;
     uint face = mix(0u, shadow_face(q), cube);
@@ -39,7 +39,7 @@ uint shadow_lamp_lights_at(shadow_light l, vec3 q)
     return shadow_lit_by(shadow_atlas, shadow_place_lamp(l, face, q));
 }
 
-float shadow_visibility_lamp_at(shadow_light l, vec3 q)
+float shadow_visibility_lamp_at(const shadow_light l, vec3 q)
 {
     return (shadow_lamp_lights_at(l, q) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
 }
@@ -57,12 +57,12 @@ float shadow_visibility(uint light, vec3 p)
                                    : shadow_visibility_lamp(light, p);
 }
 
-float shadow_visibility_surface_sun_of(shadow_light l, shadow_surface s)
+float shadow_visibility_surface_sun_of(const shadow_light l, const shadow_surface s)
 {
     return shadow_visibility_on_sun_map(shadow_atlas, l, s);
 }
 
-float shadow_visibility_surface_lamp_of(shadow_light l, shadow_surface s)
+float shadow_visibility_surface_lamp_of(const shadow_light l, const shadow_surface s)
 {
     vec3 q = shadow_frame(l, s.p), m = shadow_frame_direction(l, s.n);
     uint face = 0u;

@@ -35,13 +35,13 @@ shadow_light shadow_light_of(uint n)
 #endif
 #endif
 
-vec3 shadow_frame(shadow_light l, vec3 p)
+vec3 shadow_frame(const shadow_light l, vec3 p)
 {
     return vec3(dot(l.rows[0].xyz, p) + l.rows[0].w, dot(l.rows[1].xyz, p) + l.rows[1].w,
                 dot(l.rows[2].xyz, p) + l.rows[2].w);
 }
 
-vec3 shadow_frame_direction(shadow_light l, vec3 n)
+vec3 shadow_frame_direction(const shadow_light l, vec3 n)
 {
     return vec3(dot(l.rows[0].xyz, n), dot(l.rows[1].xyz, n), dot(l.rows[2].xyz, n));
 }

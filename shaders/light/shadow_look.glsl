@@ -12,7 +12,7 @@ struct shadow_place {
     bool inside; // of the map
 };
 
-shadow_place shadow_place_sun(shadow_light l, vec3 q)
+shadow_place shadow_place_sun(const shadow_light l, vec3 q)
 {
     // What is behind all casters is at their far side; what is before them is nearer than all.
     return shadow_place(l.offset + l.texels * (0.5 + 0.5 * q.xy), max(q.z, 0.0),
@@ -20,7 +20,7 @@ shadow_place shadow_place_sun(shadow_light l, vec3 q)
 }
 
 // `q` is on the face.
-shadow_place shadow_place_lamp(shadow_light l, uint face, vec3 q)
+shadow_place shadow_place_lamp(const shadow_light l, uint face, vec3 q)
 {
     vec2 uv = q.xy * (l.scale / max(q.z, 1e-20));
     vec2 tile = vec2(face % 3u, face / 3u);
@@ -30,7 +30,7 @@ shadow_place shadow_place_lamp(shadow_light l, uint face, vec3 q)
 }
 
 // The depths of the four texels around a place: at (0, 1), (1, 1), (1, 0), (0, 0) from `first`.
-vec4 shadow_gather(sampler2D maps, shadow_place place, out vec2 first)
+vec4 shadow_gather(sampler2D maps, const shadow_place place, out vec2 first)
 {
     // The last texels of a map are never covered, so that no place inside is blended with a neighbour map.
     first = floor(place.texel - 0.5);
@@ -43,7 +43,7 @@ const uint SHADOW_LIT_BY_HALF = 1u, SHADOW_LIT_BY_ALL = 2u;
 
 // By half of the texels, the nearer counting more: shadows are as large as they should be. Where no wall is between a place
 // and one that all four light, that is what lights it. 0: dark.
-uint shadow_lit_by(sampler2D maps, shadow_place place)
+uint shadow_lit_by(sampler2D maps, const shadow_place place)
 {
     vec2 first;
     vec4 lit = vec4(lessThanEqual(shadow_gather(maps, place, first), vec4(place.depth)));
@@ -75,7 +75,7 @@ struct shadow_surface {
 // they should be. That would let light in beneath the edges of closed rooms. So where a texel shows the foot of a wall,
 // which meets the surface, only what all four light is lit; and what sees past the surface does not count beside what is dark: of a room
 // whose walls are seen edge-on no foot is seen, but past its roof there is no more of its floor.
-float shadow_visibility_on_plane(sampler2D maps, shadow_light l, shadow_place place, vec2 slope, float rounding,
+float shadow_visibility_on_plane(sampler2D maps, const shadow_light l, const shadow_place place, vec2 slope, float rounding,
                                  float texel)
 {
     slope *= 2.0 / l.texels; // by texels
@@ -111,7 +111,7 @@ const float SHADOW_SLANT = 0.25;
 // The same for a place on a surface, in [0, 1]. Depths that do not change with u and v except linearly (parallel maps
 // as they are, perspective ones because they are reciprocal) are those of the surface's own plane at the texels: so a
 // flat one does not shadow itself, whatever its slope, and what is in front of it by more than a thirtieth of a texel does.
-float shadow_visibility_on_sun_map(sampler2D maps, shadow_light l, shadow_surface s)
+float shadow_visibility_on_sun_map(sampler2D maps, const shadow_light l, const shadow_surface s)
 {
     vec3 q = shadow_frame(l, s.p), m = shadow_frame_direction(l, s.n);
     float slant = abs(m.z); // cosine of light and normal, in depths by metre

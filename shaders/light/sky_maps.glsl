@@ -22,7 +22,7 @@ shadow_light sky_map_of(uint n)
 }
 
 // The map of the same direction that shows place p: `map`, or beyond what it covers the wider one.
-shadow_light sky_map_around(shadow_light map, vec3 p)
+shadow_light sky_map_around(const shadow_light map, vec3 p)
 {
     vec2 q = shadow_frame(map, p).xy;
     if (map.wider > 0u && any(greaterThanEqual(abs(q), vec2(1.0)))) {
@@ -32,7 +32,7 @@ shadow_light sky_map_around(shadow_light map, vec3 p)
 }
 
 // Of a place in the medium: SHADOW_LIT_BY_*.
-uint sky_map_lights(shadow_light map, vec3 p)
+uint sky_map_lights(const shadow_light map, vec3 p)
 {
     return shadow_lit_by(sky_atlas, shadow_place_sun(map, shadow_frame(map, p)));
 }

@@ -35,7 +35,7 @@ float sky_seen_share(uint plane, uvec3 cell, uvec3 dims)
 }
 
 // Irradiance across ordinate o where `share` of it is seen and `even` of the mean.
-vec3 sky_seen_irradiance(ordinate o, float share, float even)
+vec3 sky_seen_irradiance(const ordinate o, float share, float even)
 {
     return o.irradiance * share + environment.sky * (o.even * (share - even));
 }

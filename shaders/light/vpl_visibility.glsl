@@ -83,7 +83,7 @@ vpl_map vpl_map_of(uint vpl, vec3 axis)
 // Share of a VPL's light that goes the way `away` to a point in the medium and is not stopped by surfaces, r = length(away): of
 // the four rays around that way, those that reach beyond the point. `closed`: of a cell that has a wall between
 // it and the VPL, which all four rays must reach: some of them may end beyond it where that is seen under a small angle.
-float vpl_map_visibility(vpl_map map, vec3 away, float r, bool closed)
+float vpl_map_visibility(const vpl_map map, vec3 away, float r, bool closed)
 {
     vec2 x = vpl_map_place(away * map.frame) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;
     vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
@@ -105,7 +105,7 @@ layout(set = 0, binding = VPL_PLANES) uniform sampler2D vpl_planes;
 const float VPL_ABSTAINS = 2.0; // times as far as the ray's end
 const float VPL_ROUNDING = 1e-3; // of the distance of the point: what planes of small triangles are off by
 
-float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
+float vpl_map_visibility_surface(const vpl_map map, vec3 away, vec3 normal)
 {
     vec3 d = away * map.frame, n = normal * map.frame; // multiplied from the left: into the frame
     vec2 x = vpl_map_place(d) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;

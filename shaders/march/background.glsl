@@ -41,7 +41,7 @@ vec3 background_lookup(sampler2D map, vec2 uv, vec2 width)
 
 // Radiance, W/(m^2 sr), that arrives at the part of the image within `side` / 2 pixels of `pixel` (column +
 // u, row + v), as if nothing were in between. `direction`: of the ray through `pixel`.
-vec3 background_radiance(env_block env, sampler2D map, camera_block camera, vec3 direction, vec2 pixel,
+vec3 background_radiance(const env_block env, sampler2D map, const camera_block camera, vec3 direction, vec2 pixel,
                          float side)
 {
     if (env.has_map == 0u) {

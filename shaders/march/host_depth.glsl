@@ -6,7 +6,7 @@
 #define TYN_INFINITY uintBitsToFloat(0x7f800000u)
 
 // Distance along a ray of the camera to the host's surface, m. `clip`: tyn_job.host_depth.
-float host_distance(sampler2D depths, camera_block camera, vec4 clip, ivec2 pixel, vec3 direction)
+float host_distance(sampler2D depths, const camera_block camera, vec4 clip, ivec2 pixel, vec3 direction)
 {
     ivec2 size = textureSize(depths, 0);
     ivec2 texel = ivec2((vec2(pixel) + 0.5) / vec2(camera.size) * vec2(size));

@@ -10,7 +10,7 @@ layout(binding = SURFACE_RADIANCE, rg32ui) uniform readonly uimage2D surface_ima
 layout(binding = SURFACE_DISTANCES) uniform sampler2D distances_tex;
 
 // Samples along each side of a pixel.
-int surface_side(camera_block camera)
+int surface_side(const camera_block camera)
 {
     return textureSize(distances_tex, 0).x / int(camera.size.x);
 }
@@ -50,7 +50,7 @@ struct surface_group {
 
 // Of the samples `left` (bits), the nearest and those up to 1.05 times as far. `one_piece`: only on the same piece of
 // surface: their mean distance is on it, where that of both sides of an edge is behind the edge.
-surface_group surface_group_from(camera_block camera, ivec2 pixel, uint left, bool one_piece)
+surface_group surface_group_from(const camera_block camera, ivec2 pixel, uint left, bool one_piece)
 {
     int side = surface_side(camera);
     float nearest = TYN_INFINITY, count = 0.0;
@@ -83,7 +83,7 @@ surface_group surface_group_from(camera_block camera, ivec2 pixel, uint left, bo
     return group;
 }
 
-surface_samples surface_samples_of(camera_block camera, ivec2 pixel)
+surface_samples surface_samples_of(const camera_block camera, ivec2 pixel)
 {
     surface_samples s;
     s.side = surface_side(camera);

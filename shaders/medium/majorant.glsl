@@ -16,7 +16,7 @@ struct brick_walk {
 };
 
 // Span of the ray in the box, of unlimited length along repeated axes; empty if x >= y.
-vec2 brick_span(medium_block medium, vec3 origin, vec3 direction)
+vec2 brick_span(const medium_block medium, vec3 origin, vec3 direction)
 {
     const float FAR = 1e30;
     vec3 far = vec3(FAR) * vec3(medium.repeat);
@@ -25,7 +25,7 @@ vec2 brick_span(medium_block medium, vec3 origin, vec3 direction)
 }
 
 // `position` is in the box, up to rounding.
-brick_walk brick_start(medium_block medium, vec3 position, vec3 direction)
+brick_walk brick_start(const medium_block medium, vec3 position, vec3 direction)
 {
     brick_walk walk;
     walk.period = floor(position / medium.extent) * medium.extent * vec3(medium.repeat);
@@ -36,7 +36,7 @@ brick_walk brick_start(medium_block medium, vec3 position, vec3 direction)
 }
 
 // Distance from `position` to where the ray leaves its brick, and through which axis.
-float brick_exit(medium_block medium, brick_walk walk, vec3 position, out int axis)
+float brick_exit(const medium_block medium, const brick_walk walk, vec3 position, out int axis)
 {
     bvec3 up = greaterThan(walk.inverse, vec3(0.0));
     vec3 face = min(vec3(walk.cell + ivec3(up)) * medium.brick_size, medium.extent) + walk.period;
@@ -46,7 +46,7 @@ float brick_exit(medium_block medium, brick_walk walk, vec3 position, out int ax
 }
 
 // Goes on to the next brick; false if the ray leaves the box there.
-bool brick_step(medium_block medium, inout brick_walk walk, int axis)
+bool brick_step(const medium_block medium, inout brick_walk walk, int axis)
 {
     ivec3 along = ivec3(equal(ivec3(0, 1, 2), ivec3(axis)));
     ivec3 way = along * ivec3(sign(walk.inverse));

@@ -30,9 +30,9 @@
 //   void path_begin(inout rng_state, vec2 random, out vec3 origin, out vec3 direction)  -- the next path
 //   float path_begin_pdf(vec3 direction)  -- probes: 1/sr of the first directions of the path just begun
 //   void path_direct(vec3 direction, vec3 irradiance)  -- probes: uncollided lamps and emitters at the point itself
-//   void path_end(path_result)                       -- the path's contribution
+//   void path_end(const path_result)                       -- the path's contribution
 //   PATH_FIELDS, where paths may end in a field and be guided by one, and
-//     vec3 path_field(vec3 at, vec3 way, media_point m)  -- what scatters there against the path's way of light that has
+//     vec3 path_field(vec3 at, vec3 way, const media_point m)  -- what scatters there against the path's way of light that has
 //       scattered before, W/(m^2 sr)
 //     path_guide path_guide_at(vec3 at, vec3 way, float g)  -- the guide there
 #ifndef TYN_PATH_GLSL
@@ -73,9 +73,9 @@ bool path_next(inout uint element, inout uint first, inout uint end);
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction);
 float path_begin_pdf(vec3 direction);
 void path_direct(vec3 direction, vec3 irradiance);
-void path_end(path_result result);
+void path_end(const path_result result);
 #ifdef PATH_FIELDS
-vec3 path_field(vec3 at, vec3 way, media_point m);
+vec3 path_field(vec3 at, vec3 way, const media_point m);
 path_guide path_guide_at(vec3 at, vec3 way, float g);
 #endif
 
@@ -104,7 +104,7 @@ lamp_view lamp_see(vec3 lamp, vec3 origin, vec3 direction, vec2 span)
     return v;
 }
 
-float lamp_pdf(lamp_view v, float t)
+float lamp_pdf(const lamp_view v, float t)
 {
     float x = t - v.closest;
     if (t > v.span.y) {
@@ -163,7 +163,7 @@ struct path_state {
 };
 
 // The media ahead, up to the next surface.
-vec2 path_span(path_state path)
+vec2 path_span(const path_state path)
 {
     vec2 span = media_span(path.vertex, path.way);
     return SURFACES ? vec2(span.x, min(span.y, path.end)) : span;
@@ -182,13 +182,13 @@ void path_add(inout path_result result, vec3 light, uint depth)
     }
 }
 
-vec3 path_weight(path_state path)
+vec3 path_weight(const path_state path)
 {
     return GREY ? path.beta : path.beta / channel_mean(path.rho);
 }
 
 // The phase function of the channel that directions are drawn for.
-phase path_phase(path_state path, media_point m)
+phase path_phase(const path_state path, const media_point m)
 {
     if (GREY) {
         return m.phase[0];
@@ -276,7 +276,7 @@ struct path_flight {
 };
 
 // Emission on the next `moved` metres: track-length estimator, at one point of them.
-void path_glow(inout path_flight f, path_state path, float moved, inout rng_state rng)
+void path_glow(inout path_flight f, const path_state path, float moved, inout rng_state rng)
 {
     vec3 somewhere = f.at + moved * rng_float(rng_next(rng).x) * path.way;
     f.glow += path_weight(path) * media_at(somewhere, 0.0, path.hero).emission * moved;
@@ -473,7 +473,7 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
 }
 
 // What a path that leaves the media sees, with its weight. Once it has scattered, a map is looked for at its vertices.
-void path_leave(inout path_result result, path_state path, vec3 weight)
+void path_leave(inout path_result result, const path_state path, vec3 weight)
 {
     if (path.depth == 0u) {
         result.transmittance = weight;
@@ -486,7 +486,7 @@ void path_leave(inout path_result result, path_state path, vec3 weight)
 }
 
 // What goes on in `direction`, of light that arrives there: the phase function of each channel, or a surface's cosine; 1/sr.
-vec3 path_scatters(path_state path, media_point m, bool at_surface, vec3 normal, vec3 direction)
+vec3 path_scatters(const path_state path, const media_point m, bool at_surface, vec3 normal, vec3 direction)
 {
     if (at_surface) {
         return vec3(max(dot(direction, normal), 0.0) * (1.0 / HG_PI));
@@ -495,7 +495,7 @@ vec3 path_scatters(path_state path, media_point m, bool at_surface, vec3 normal,
 }
 
 // The map's light in `direction` as the vertex scatters it, over the direction's pdf.
-vec3 path_map(path_state path, media_point m, bool at_surface, vec3 normal, inout rng_state rng, out vec3 direction)
+vec3 path_map(const path_state path, const media_point m, bool at_surface, vec3 normal, inout rng_state rng, out vec3 direction)
 {
     vec3 light = vec3(0.0);
     float total = 0.0, there = 0.0, u = rng_float(rng_next(rng).x);
@@ -525,7 +525,7 @@ vec3 path_map(path_state path, media_point m, bool at_surface, vec3 normal, inou
 }
 
 // What guides the path where it scatters; false: nothing.
-bool path_guide_of(path_state path, path_flight f, vec4 kept_light, out path_guide guide)
+bool path_guide_of(const path_state path, const path_flight f, vec4 kept_light, out path_guide guide)
 {
     // The same for all heroes: heuristics over emitters' directions add up to 1 over all of them.
     float g = channel_mean(phase_mean_cosine(f.m.phase));

@@ -27,14 +27,14 @@ vec3 draw_entry(vec3 way, vec3 random)
 }
 
 // Solid angle into which a lamp shines, sr; of a sun the area across its light, m^2.
-float light_measure(light_block light)
+float light_measure(const light_block light)
 {
     return light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? sum3(faces_across(light.direction))
                                                     : 2.0 * HG_PI * (1.0 - light.cos_outer);
 }
 
 // What lights are drawn by, W.
-float light_drawn_by(light_block light)
+float light_drawn_by(const light_block light)
 {
     return max3(light.color) * light_measure(light);
 }
@@ -45,7 +45,7 @@ float sky_drawn_by()
 }
 
 // Into a lamp's cone, uniform.
-vec3 lamp_way(light_block lamp, vec2 random)
+vec3 lamp_way(const light_block lamp, vec2 random)
 {
     float z = 1.0 - random.x * (1.0 - lamp.cos_outer);
     float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;

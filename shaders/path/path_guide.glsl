@@ -55,13 +55,13 @@ float guide_sharpness(float mean_cosine)
     return mean_cosine * (3.0 - square) / max(1.0 - square, 1e-4);
 }
 
-float guide_beams(path_guide guide, vec3 d)
+float guide_beams(const path_guide guide, vec3 d)
 {
     float away = one_minus_cosine(guide.beams.axis, d);
     return 0.5 * (hg_near(guide.beams.mean_cosine, away) + hg_near(guide.spread, away));
 }
 
-float guide_scattered(path_guide guide, vec3 d)
+float guide_scattered(const path_guide guide, vec3 d)
 {
     return hg_near(guide.scattered.mean_cosine, one_minus_cosine(guide.scattered.axis, d));
 }
@@ -101,13 +101,13 @@ path_guide guide_towards(vec3 toward, uint depth, vec3 way, float g)
 }
 
 // The guess, of a fluence of 1; 1/sr.
-float guide_radiance(path_guide guide, vec3 d)
+float guide_radiance(const path_guide guide, vec3 d)
 {
     return guide.scattered.share * guide_scattered(guide, d) + guide.beams.share * guide_beams(guide, d);
 }
 
 // About the pdf of the directions that guide_direction takes, for heuristics; `forward`: the phase function.
-float guide_pdf(path_guide guide, vec3 d, float forward)
+float guide_pdf(const path_guide guide, vec3 d, float forward)
 {
     return forward * guide_radiance(guide, d) / guide.expected;
 }
@@ -123,7 +123,7 @@ bool guide_takes(float weight, inout float total, inout float u)
 }
 
 // The next direction. `weight`: the phase function `p` over its pdf.
-vec3 guide_direction(path_guide guide, phase p, vec3 way, inout rng_state rng, out float weight)
+vec3 guide_direction(const path_guide guide, const phase p, vec3 way, inout rng_state rng, out float weight)
 {
     vec3 taken = way;
     float total = 0.0, there = 0.0, u = rng_float(rng_next(rng).x);

@@ -29,7 +29,7 @@ light_block light_get(uint index)
 }
 
 // What a light sends to p from a point of itself.
-light_sample light_from(light_block light, vec3 from, vec3 p)
+light_sample light_from(const light_block light, vec3 from, vec3 p)
 {
     if ((FLAGS & TYN_PATH_LAMPS) == 0u || light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
         return light_sample(-light.direction, 1e30, light.color);

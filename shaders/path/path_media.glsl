@@ -44,19 +44,19 @@ shape_block shape_get(uint i)
     return shape;
 }
 
-vec3 shape_turn(shape_block shape, vec3 d)
+vec3 shape_turn(const shape_block shape, vec3 d)
 {
     return vec3(dot(shape.rows[0].xyz, d), dot(shape.rows[1].xyz, d), dot(shape.rows[2].xyz, d));
 }
 
-vec3 shape_local(shape_block shape, vec3 p)
+vec3 shape_local(const shape_block shape, vec3 p)
 {
     return shape_turn(shape, p) + vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
 }
 
 // Value of the shape's grid: trilinear, clamped to the grid's own texels, so that neighbours in the atlas
 // never show.
-float shape_density(shape_block shape, vec3 local)
+float shape_density(const shape_block shape, vec3 local)
 {
     vec3 size = vec3(shape.size);
     vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(shape.offset);
@@ -64,18 +64,18 @@ float shape_density(shape_block shape, vec3 local)
 }
 
 // A grid of colours of the shape, likewise; TYN_COLORS_*.
-vec3 shape_color(shape_block shape, uint which, vec3 local)
+vec3 shape_color(const shape_block shape, uint which, vec3 local)
 {
     vec3 texel = shape_colors_texel(shape.colors[which], local);
     return shape.colors[which].scale * textureLod(colors, texel * path_colors_texel, 0.0).rgb;
 }
 
-bool shape_is_sphere(shape_block shape)
+bool shape_is_sphere(const shape_block shape)
 {
     return SHAPES == 1u ? (FLAGS & TYN_PATH_SPHERE) != 0u : shape.kind == TYN_SHAPE_KIND_SPHERE;
 }
 
-bool shape_holds(shape_block shape, vec3 local)
+bool shape_holds(const shape_block shape, vec3 local)
 {
     if (shape_is_sphere(shape)) {
         return dot(local, local) <= 0.25;
@@ -92,7 +92,7 @@ vec3 wrap(vec3 p)
 }
 
 // What a shape emits where its density is this and its absorption `a`.
-vec3 glow_at(shape_block shape, vec3 local, bool holds, float density, vec3 a)
+vec3 glow_at(const shape_block shape, vec3 local, bool holds, float density, vec3 a)
 {
     vec3 emission = density * shape.emission;
     if ((FLAGS & TYN_PATH_GLOW) != 0u && holds) {

@@ -73,7 +73,7 @@ bool surface_hides(vec3 origin, vec3 direction, float distance, uint target)
 
 // ---- materials --------------------------------------------------------------------------------
 
-vec3 texel_color(surface_texture map, ivec2 at)
+vec3 texel_color(const surface_texture map, ivec2 at)
 {
     vec3 c = surface_texel_srgb(map.first, ivec2(map.size), map.wrap, at); // IEC 61966-2-1
     return mix(c * (1.0 / 12.92), pow((c + 0.055) * (1.0 / 1.055), vec3(2.4)), greaterThan(c, vec3(0.04045)));
@@ -98,14 +98,14 @@ struct surface_finding {
 };
 
 // Tells whether a surface emits to its front or its back, and the density of drawing its points.
-vec3 surface_emission(surface_material material, bool front, out float density)
+vec3 surface_emission(const surface_material material, bool front, out float density)
 {
     vec3 emission = surface_emitted(material, front);
     density = EMITTERS ? max3(emission) / max(emitters.weight, 1e-37) : 0.0;
     return emission;
 }
 
-vec3 surface_albedo(surface_material material, uint index, vec2 barycentric)
+vec3 surface_albedo(const surface_material material, uint index, vec2 barycentric)
 {
     vec3 colour = vec3(1.0);
     if ((FLAGS & TYN_PATH_TEXTURES) != 0u && material.texture != TYN_SURFACE_NO_TEXTURE) {
@@ -115,7 +115,7 @@ vec3 surface_albedo(surface_material material, uint index, vec2 barycentric)
     return surface_reflected(material, colour);
 }
 
-surface_finding surface_find(surface_hit hit, vec3 period, vec3 way)
+surface_finding surface_find(const surface_hit hit, vec3 period, vec3 way)
 {
     surface_finding f;
     f.point = surface_point_at(hit.triangle, hit.barycentric);
@@ -151,7 +151,7 @@ struct emitter_sample {
     uint triangle;
 };
 
-uint surface_cell_pick(surface_cell cell, uint bits)
+uint surface_cell_pick(const surface_cell cell, uint bits)
 {
     return float(bits) * (1.0 / 4294967296.0) < cell.keep ? cell.triangle : cell.alias;
 }

@@ -19,7 +19,7 @@
 // The phase function, 1/sr, from 1 - mu; mu = cosine of the scattering angle. Give 1 - mu = |v - d|^2 / 2, which does
 // not cancel near the peak of a narrow lobe. Averaged over a light that is a soft round spot around its direction, with
 // the mean cosine `spot`: 1 = a point. Tables are not averaged.
-float phase_near(phase p, float spot, float one_minus_mu)
+float phase_near(const phase p, float spot, float one_minus_mu)
 {
 #ifdef PHASE_TABLES
     if (PHASE_TABLED && p.table != 0u) {
@@ -30,7 +30,7 @@ float phase_near(phase p, float spot, float one_minus_mu)
 }
 
 // 1 - mu of a scattering angle that is distributed as the phase function, from a uniform number.
-float phase_sample(phase p, float u)
+float phase_sample(const phase p, float u)
 {
 #ifdef PHASE_TABLES
     if (PHASE_TABLED && p.table != 0u) {
@@ -42,7 +42,7 @@ float phase_sample(phase p, float u)
 
 // ---- mean cosine --------------------------------------------------------------------------------
 
-float phase_mean_cosine(phase p)
+float phase_mean_cosine(const phase p)
 {
     return p.g;
 }
@@ -80,7 +80,7 @@ phase phase_select(phase p[3], vec3 channel)
 // ---- delta scaling ------------------------------------------------------------------------------
 
 // Part of the scattering that counts as going straight on.
-float delta_fraction(phase p)
+float delta_fraction(const phase p)
 {
     return p.table != 0u ? p.delta : delta_fraction(p.g);
 }
@@ -91,7 +91,7 @@ vec3 delta_fraction(phase p[3])
 }
 
 // Mean cosine of what is left, (g - f) / (1 - f): of a lobe g / (1 + g) for g > 0, else g.
-float delta_cosine(phase p)
+float delta_cosine(const phase p)
 {
     return p.table != 0u ? (p.g - p.delta) / (1.0 - p.delta) : p.g / (1.0 + max(p.g, 0.0));
 }
@@ -108,13 +108,13 @@ phase phase_of_delta_cosine(float scaled)
 }
 
 // Mean cosine of the narrowest forward lobe, >= 0.
-float phase_forward_cosine(phase p)
+float phase_forward_cosine(const phase p)
 {
     return p.table != 0u ? p.forward : max(p.g, 0.0);
 }
 
 // A lobe that points backward: its moments are those of the lobe as it is seen from behind (tyn_phase_moments).
-bool phase_is_backward(phase p)
+bool phase_is_backward(const phase p)
 {
     return p.table == 0u && p.g < 0.0;
 }

@@ -13,7 +13,7 @@ vec3 phase_between(phase p[3], vec3 before, vec3 after)
 }
 
 // Unit vector about `axis`, distributed as the phase function, from two uniform numbers.
-vec3 phase_direction(phase p, vec3 axis, vec2 u)
+vec3 phase_direction(const phase p, vec3 axis, vec2 u)
 {
     float one_minus_mu = phase_sample(p, u.x);
     float across = sqrt(max(one_minus_mu * (2.0 - one_minus_mu), 0.0)), azimuth = 2.0 * HG_PI * u.y;
@@ -30,7 +30,7 @@ vec3 phase_direction(phase p, vec3 axis, vec2 u)
 
 // Where light that has scattered once (of the forward lobe) and twice comes from, half and half. For backward
 // scattering the lobes are uniform.
-phase phase_about_light(phase p, bool once)
+phase phase_about_light(const phase p, bool once)
 {
     float g = phase_forward_cosine(p);
     return phase_of_mean_cosine(once ? g : g * g);

@@ -76,7 +76,7 @@ scatter_angle scatter_angle_of_point(uint channel, float one_minus_mu)
 }
 
 // K_tms and K_lobe, 1/sr, behind the scattering depth tau_s. One fetch.
-vec2 scatter_kernels(scatter_angle a, float tau_s)
+vec2 scatter_kernels(const scatter_angle a, float tau_s)
 {
     float direct = exp(-tau_s), u = min(lut_depth_log(tau_s) * a.scale, a.last);
     vec2 table = textureLod(lut_tex, vec2(a.uv.x + u, a.uv.y), 0.0).rg;
@@ -100,7 +100,7 @@ scatter_rows scatter_rows_of(float g, float theta)
                         fract(row));
 }
 
-vec2 scatter_table(scatter_rows rows, float u)
+vec2 scatter_table(const scatter_rows rows, float u)
 {
     return mix(textureLod(lut_tex, vec2(u, rows.v), 0.0).rg,
                textureLod(lut_tex, vec2(u, rows.next_v), 0.0).rg, rows.between);
@@ -109,7 +109,7 @@ vec2 scatter_table(scatter_rows rows, float u)
 // `last` is the last scattering; the earlier ones on the way had the mean 1 - f = tau_p / tau_s, which
 // keeps the light that is still in the beam exact. `set` of tables: lut.sun_set of a sun, 0 of a point; `a`:
 // mean cosine of the sun.
-vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, phase last, float tau_s, float tau_p)
+vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, const phase last, float tau_s, float tau_p)
 {
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
     float g = min(phase_mean_cosine(last), HG_MAX);

@@ -41,19 +41,19 @@ float lut_depth(uint texel, float f)
 
 // Angle around which the texels go from even to geometric spacing, radians: a few times the width of
 // the twice scattered light, p * p = Henyey-Greenstein of g^2.
-float lut_width(phase p)
+float lut_width(const phase p)
 {
     return 8.0 * (1.0 - phase_forward_cosine(p));
 }
 
-float lut_v(float theta, phase p)
+float lut_v(float theta, const phase p)
 {
     float width = lut_width(p);
     float t = log(1.0 + theta / width) / log(1.0 + 3.14159265358979 / width);
     return (0.5 + t * float(TYN_LUT_ANGLES - 1)) / float(TYN_LUT_ANGLES);
 }
 
-float lut_theta(uint texel, phase p)
+float lut_theta(uint texel, const phase p)
 {
     float width = lut_width(p);
     float t = float(texel) / float(TYN_LUT_ANGLES - 1);

@@ -43,7 +43,7 @@ struct gbuffer_point {
     gbuffer_colours colours;
 };
 
-gbuffer_colours gbuffer_add(gbuffer_colours sum, float share, gbuffer_colours c)
+gbuffer_colours gbuffer_add(const gbuffer_colours sum, float share, const gbuffer_colours c)
 {
     return gbuffer_colours(sum.albedo + share * c.albedo, sum.emission + share * c.emission);
 }
@@ -55,7 +55,7 @@ struct gbuffer_facing {
 };
 
 // Floats, but for the lowest bits of the shading normal: they tell what is shown, and of which sample it is.
-uvec4 gbuffer_facing_pack(gbuffer_facing f)
+uvec4 gbuffer_facing_pack(const gbuffer_facing f)
 {
     uvec4 texel = floatBitsToUint(vec4(octahedral_of(f.facet), octahedral_of(f.normal)));
     return uvec4(texel.xy, (texel.z & ~3u) | f.shown, (texel.w & ~15u) | uint(f.which));
@@ -75,7 +75,7 @@ int gbuffer_texels(int samples)
 }
 
 // Albedo, 0 to 1: 20 bits a channel.
-uvec4 gbuffer_pack(gbuffer_colours colours)
+uvec4 gbuffer_pack(const gbuffer_colours colours)
 {
     uvec3 c = uvec3(clamp(colours.albedo, 0.0, 1.0) * 1048575.0 + 0.5);
     return uvec4(colour_pack(colours.emission), c.r | c.b << 20, c.g | (c.b >> 12) << 20);
@@ -89,7 +89,7 @@ gbuffer_colours gbuffer_unpack(uvec4 texel)
 
 // Do a sample at `other` (M) with the normal `facet`, in the distance `distance` from the camera, and one at `first`
 // lie on one piece of surface?
-bool gbuffer_same(gbuffer_point first, vec3 at, vec3 facet, vec3 other, float distance)
+bool gbuffer_same(const gbuffer_point first, vec3 at, vec3 facet, vec3 other, float distance)
 {
     vec3 d = other - at;
     return dot(facet, first.facet) > 0.9 && abs(dot(d, first.facet)) < 0.3 * length(d) + 1e-5 * distance;

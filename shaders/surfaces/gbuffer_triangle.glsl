@@ -44,7 +44,7 @@ camera_ray gbuffer_ray(vec2 at)
 }
 
 // Where a ray meets the plane: weights of the corners, and distance.
-vec4 gbuffer_meet(gbuffer_triangle f, camera_ray ray, out vec3 direction)
+vec4 gbuffer_meet(const gbuffer_triangle f, const camera_ray ray, out vec3 direction)
 {
     direction = surface_turn(surfaces.to_world, ray.direction);
     vec3 from = surface_transform(surfaces.to_world, ray.origin) - f.corner;
@@ -56,7 +56,7 @@ vec4 gbuffer_meet(gbuffer_triangle f, camera_ray ray, out vec3 direction)
 }
 
 // Albedo at the weights w of a ray through image position `at`.
-vec3 gbuffer_albedo_at(gbuffer_triangle f, vec2 at, vec3 w)
+vec3 gbuffer_albedo_at(const gbuffer_triangle f, vec2 at, vec3 w)
 {
     vec3 colour = vec3(1.0), other;
     // A CPU device runs what is in here for all samples: a third of the time where there are no textures.
@@ -71,7 +71,7 @@ vec3 gbuffer_albedo_at(gbuffer_triangle f, vec2 at, vec3 w)
 }
 
 // What the ray through image position `at` (samples) sees of the triangle.
-gbuffer_point gbuffer_point_of(gbuffer_triangle f, vec2 at, camera_ray ray)
+gbuffer_point gbuffer_point_of(const gbuffer_triangle f, vec2 at, const camera_ray ray)
 {
     vec3 direction;
     vec4 w = gbuffer_meet(f, ray, direction);

@@ -7,13 +7,13 @@
 
 // The share of irradiance that leaves again, evenly in all directions (a Lambertian surface), on both sides.
 // `colour`: of the material's texture, 1 without one.
-vec3 surface_reflected(surface_material m, vec3 colour)
+vec3 surface_reflected(const surface_material m, vec3 colour)
 {
     return m.albedo * colour;
 }
 
 // Radiance that leaves the front or the back by itself, W/(m^2 sr).
-vec3 surface_emitted(surface_material m, bool front)
+vec3 surface_emitted(const surface_material m, bool front)
 {
     return front || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u ? m.emission : vec3(0.0);
 }

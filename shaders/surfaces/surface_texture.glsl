@@ -32,7 +32,7 @@ vec3 surface_texel(uint first, ivec2 size, uvec2 wrap, ivec2 at)
 }
 
 // First texel of a level.
-uint surface_level(surface_texture t, uint level, out ivec2 size)
+uint surface_level(const surface_texture t, uint level, out ivec2 size)
 {
     uint first = t.first;
     for (uint l = 0u; l < level; l++) {
@@ -43,7 +43,7 @@ uint surface_level(surface_texture t, uint level, out ivec2 size)
     return first;
 }
 
-vec3 surface_texture_level(surface_texture t, vec2 uv, uint level)
+vec3 surface_texture_level(const surface_texture t, vec2 uv, uint level)
 {
     ivec2 size;
     uint first = surface_level(t, level, size);

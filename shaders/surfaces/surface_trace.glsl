@@ -66,7 +66,7 @@ vec3 surface_cross(vec3 a, vec3 b, out vec3 sizes)
 
 // Does the ray meet a triangle before `far`, and where? `edges`: barycentric weights of v1 and v2, not yet divided by
 // their sum, edges.z. `normal` of any length; `rounding` bounds what rounding did to it (surface_cross).
-bool surface_meets(surface_ray ray, vec3 v0, vec3 v1, vec3 v2, vec3 normal, vec3 rounding, float far, out float t,
+bool surface_meets(const surface_ray ray, vec3 v0, vec3 v1, vec3 v2, vec3 normal, vec3 rounding, float far, out float t,
                    out vec3 edges)
 {
     vec3 from = v0 - ray.origin;
@@ -91,7 +91,7 @@ bool surface_meets(surface_ray ray, vec3 v0, vec3 v1, vec3 v2, vec3 normal, vec3
 }
 
 // Takes the triangle as the new hit if the ray meets it before `hit.t`.
-bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
+bool surface_meet(const surface_ray ray, uint index, inout surface_hit hit)
 {
     uvec4 corners = surface_triangle_at(index);
     vec3 v0 = surface_position(corners.x), v1 = surface_position(corners.y), v2 = surface_position(corners.z);
@@ -105,7 +105,7 @@ bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
 }
 
 // All triangles, which are SURFACE_FEW: all threads that run together try the same one, and read nothing.
-bool surface_meet_few(surface_ray ray, inout surface_hit hit)
+bool surface_meet_few(const surface_ray ray, inout surface_hit hit)
 {
     bool found = false;
     vec3 edges = vec3(1.0);
@@ -127,7 +127,7 @@ bool surface_meet_few(surface_ray ray, inout surface_hit hit)
 // Where the ray enters a box; SURFACE_MISSED if it does not before `far`. Never misses a box for rounding: Ize,
 // "Robust BVH ray traversal" (JCGT 2(2), 2013), with a quotient that is off by 2.5 ulps, as Vulkan allows: a difference,
 // the inverse and a product are off by 1 + 5 + 1 SURFACE_EPSILON, at both ends.
-float surface_enter(surface_ray ray, vec3 lo, vec3 hi, float far)
+float surface_enter(const surface_ray ray, vec3 lo, vec3 hi, float far)
 {
     vec3 a = (lo - ray.origin) * ray.inverse, b = (hi - ray.origin) * ray.inverse;
     vec3 enter = min(a, b), leave = max(a, b);
@@ -141,14 +141,14 @@ struct surface_entry {
     uint first, count; // of the node
 };
 
-surface_entry surface_enter_node(surface_ray ray, uint node, float far)
+surface_entry surface_enter_node(const surface_ray ray, uint node, float far)
 {
     uvec4 lo = surface_node_row(node, 0u), hi = surface_node_row(node, 1u);
     return surface_entry(surface_enter(ray, uintBitsToFloat(lo.xyz), uintBitsToFloat(hi.xyz), far), lo.w, hi.w);
 }
 
 // The nearest hit before `hit.t`, or with `any` the first that is found. False if there is none.
-bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
+bool surface_trace_world(const surface_ray ray, bool any, inout surface_hit hit)
 {
     if (SURFACE_FEW > 0u) {
         return surface_meet_few(ray, hit);
@@ -241,7 +241,7 @@ surface_point surface_point_at(uint index, vec2 barycentric)
 
 // Moves the point off its triangle, to the side of `towards` (a direction or a vector, M), by what rounding may
 // have done to it: as in Pharr, Jakob and Humphreys, "Physically based rendering", 3.9.
-vec3 surface_offset(surface_point p, vec3 towards)
+vec3 surface_offset(const surface_point p, vec3 towards)
 {
     float away = 2.0 * dot(abs(p.normal), p.error);
     return p.at + (dot(towards, p.normal) < 0.0 ? -away : away) * p.normal;

@@ -25,7 +25,7 @@ struct walls_planes {
 };
 
 // Bit k: p, in M, is behind plane k as seen from the cell's centre.
-uint walls_behind(walls_planes walls, vec3 p)
+uint walls_behind(const walls_planes walls, vec3 p)
 {
     uint behind = 0u;
     for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
@@ -74,7 +74,7 @@ struct walls_place {
 };
 
 // Of a point in M; outside the lattice that of its nearest cell.
-walls_place walls_place_of(lattice_box box, vec3 p)
+walls_place walls_place_of(const lattice_box box, vec3 p)
 {
     walls_place w;
     w.x = lattice_from_m(box, p) - 0.5;
@@ -85,7 +85,7 @@ walls_place walls_place_of(lattice_box box, vec3 p)
 }
 
 // Is there a wall about? If not, trilinear interpolation will do.
-bool walls_near(walls_place w)
+bool walls_near(const walls_place w)
 {
     return (w.links & TYN_WALLS_NEAR) != 0u;
 }
@@ -101,12 +101,12 @@ walls_planes walls_planes_hiding(uint cell)
 }
 
 // Is p, a point of the cell, on the side of the cell's centre?
-bool walls_same_side(lattice_box box, ivec3 cell, vec3 p)
+bool walls_same_side(const lattice_box box, ivec3 cell, vec3 p)
 {
     return walls_behind(walls_planes_of(lattice_index(box, cell)), p) == 0u;
 }
 
-vec3 walls_centre(lattice_box box, ivec3 cell)
+vec3 walls_centre(const lattice_box box, ivec3 cell)
 {
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
     return lattice_to_m(box, vec3(cell) + 0.5 + shift);
@@ -120,20 +120,20 @@ struct walls_blend {
     ivec3 instead; // where all shares are 0: the cell to take alone; x < 0: none
 };
 
-ivec3 walls_corner(walls_blend b, uint i)
+ivec3 walls_corner(const walls_blend b, uint i)
 {
     return b.cell + b.step * ivec3(i & 1u, i >> 1 & 1u, i >> 2);
 }
 
 // Does a point that is behind walls of its cell see cell q? `behind` = walls_behind of the point.
-bool walls_sees_behind(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
+bool walls_sees_behind(const lattice_box box, const walls_place w, vec3 p, uint behind, ivec3 q)
 {
     // Walls between p and q that do not touch the point's cell are in that of q.
     uint side = walls_behind(walls_planes_of(w.index), walls_centre(box, q));
     return q != w.cell && side == behind && walls_same_side(box, q, p);
 }
 
-bool walls_sees(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
+bool walls_sees(const lattice_box box, const walls_place w, vec3 p, uint behind, ivec3 q)
 {
     if (behind != 0u) {
         return walls_sees_behind(box, w, p, behind, q);
@@ -152,7 +152,7 @@ uint walls_open_corners(uint links, uvec3 negative)
 }
 
 // Is q a cell of `room`?
-bool walls_in_room(lattice_box box, ivec3 q, uint room)
+bool walls_in_room(const lattice_box box, ivec3 q, uint room)
 {
 #ifdef LATTICE_ROOMS
     return room == TYN_ROOMS_ANY || rooms_of_cell(box.dims, q) == room;
@@ -163,7 +163,7 @@ bool walls_in_room(lattice_box box, ivec3 q, uint room)
 
 #ifdef LATTICE_ROOMS
 // As rooms_told; `beside`: also of a place near a wall, if it is on the side of its cell's centre of all planes there.
-uint walls_room_told(lattice_box box, vec3 p, bool beside)
+uint walls_room_told(const lattice_box box, vec3 p, bool beside)
 {
     ivec3 c = ivec3(floor(lattice_from_m(box, p))), at = clamp(c, ivec3(0), box.dims - 1);
     uint index = lattice_index(box, at), links = walls_links_of(index);
@@ -173,7 +173,7 @@ uint walls_room_told(lattice_box box, vec3 p, bool beside)
 
 // `room` of the point, with LATTICE_ROOMS; or TYN_ROOMS_ANY. It tells what planes of two cells do not: walls in a third one
 // between them.
-walls_blend walls_blend_in(lattice_box box, walls_place w, vec3 p, uint room)
+walls_blend walls_blend_in(const lattice_box box, const walls_place w, vec3 p, uint room)
 {
     walls_planes planes = walls_planes_of(w.index);
     uint behind = walls_behind(planes, p);
@@ -230,7 +230,7 @@ walls_blend walls_blend_in(lattice_box box, walls_place w, vec3 p, uint room)
     return b;
 }
 
-walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
+walls_blend walls_blend_of(const lattice_box box, const walls_place w, vec3 p)
 {
     return walls_blend_in(box, w, p, TYN_ROOMS_ANY);
 }
@@ -238,7 +238,7 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
 // Do the centres of two cells see each other? Along the links next to the line between them: never through a
 // closed mesh; past edges and along oblique walls right to about a cell. `b` may be outside the lattice, where
 // there are no walls.
-bool walls_visible(lattice_box box, ivec3 a, ivec3 b)
+bool walls_visible(const lattice_box box, ivec3 a, ivec3 b)
 {
     ivec3 way = abs(b - a), at = a;
     int n = max(way.x, max(way.y, way.z));
@@ -257,14 +257,14 @@ bool walls_visible(lattice_box box, ivec3 a, ivec3 b)
 }
 
 // The cell that a light on a surface shines from, `n` being the side it is on.
-ivec3 walls_cell_before(lattice_box box, vec3 p, vec3 n)
+ivec3 walls_cell_before(const lattice_box box, vec3 p, vec3 n)
 {
     return ivec3(floor(lattice_from_m(box, p) + 0.75 * n));
 }
 
 // A field with one texel per cell, `skip` texels of the texture before cell 0. Channel ch of a stacked one:
 // skip.z = ch dims.z.
-vec4 walls_fetch(sampler3D field, lattice_box box, walls_blend b, ivec3 skip)
+vec4 walls_fetch(sampler3D field, const lattice_box box, const walls_blend b, ivec3 skip)
 {
     vec4 sum = vec4(0.0);
     if (b.instead.x >= 0) {

@@ -21,7 +21,7 @@ walls_triangle walls_triangle_of(vec3 a, vec3 b, vec3 c)
 }
 
 // Height of point p over the plane, times the length of `normal`, and the bound of its error.
-vec2 walls_height(walls_triangle t, vec3 p)
+vec2 walls_height(const walls_triangle t, vec3 p)
 {
     vec3 d = p - t.a;
     return vec2(dot(t.normal, d), t.normal_error * (length(d) + 1.0));
@@ -34,7 +34,7 @@ float walls_edge(vec3 d, vec3 a, vec3 b, out float error)
 }
 
 // Does the segment from p to p + d meet the triangle? `where`: share of the way, 0 to 1.
-bool walls_cuts(walls_triangle t, vec3 p, vec3 d, out float where)
+bool walls_cuts(const walls_triangle t, vec3 p, vec3 d, out float where)
 {
     vec2 start = walls_height(t, p), end = vec2(start.x + dot(t.normal, d), start.y);
     where = 0.5;
@@ -54,7 +54,7 @@ bool walls_cuts(walls_triangle t, vec3 p, vec3 d, out float where)
 
 // Does the cube of edge 2 h around p meet the triangle? Separating axes: the cube's, the triangle's normal,
 // the products of their edges.
-bool walls_in_cube(walls_triangle t, vec3 p, float h)
+bool walls_in_cube(const walls_triangle t, vec3 p, float h)
 {
     vec3 v[3] = vec3[3](t.a - p, t.b - p, t.c - p);
     vec3 lo = min(v[0], min(v[1], v[2])), hi = max(v[0], max(v[1], v[2]));

@@ -20,7 +20,7 @@ tyn_light tyn_light_at(sampler3D red, sampler3D green, sampler3D blue, mat4 worl
 
 // Irradiance on the front of a surface with the unit normal n, W/m^2; times albedo / pi it is the radiance of a diffuse one.
 // Of the radiance above, the integral of dot(-w, n) over all w that meet the front.
-vec3 tyn_light_irradiance(tyn_light light, vec3 n)
+vec3 tyn_light_irradiance(const tyn_light light, vec3 n)
 {
     vec3 along = vec3(dot(light.red, n), dot(light.green, n), dot(light.blue, n));
     return max(0.25 * light.fluence - 0.5 * along, vec3(0.0));
@@ -29,7 +29,7 @@ vec3 tyn_light_irradiance(tyn_light light, vec3 n)
 // What a particle with a Henyey-Greenstein lobe of mean cosine g in [-1, 1] scatters into the unit direction v (towards the
 // eye), per unit of its scattering cross-section, W/(m^2 sr): times albedo and the share of a pixel that it covers it is
 // what the pixel receives; times sigma_s and a length, what that length of a medium sends.
-vec3 tyn_light_inscatter(tyn_light light, float g, vec3 v)
+vec3 tyn_light_inscatter(const tyn_light light, float g, vec3 v)
 {
     vec3 along = vec3(dot(light.red, v), dot(light.green, v), dot(light.blue, v));
     return max(light.fluence + 3.0 * g * along, vec3(0.0)) * 0.0795774715; // 1 / (4 pi)

@@ -15,7 +15,7 @@ struct slices {
 };
 
 // `span`: where the ray is in the box, m from the eye.
-slices slices_of(slices_args a, vec2 span)
+slices slices_of(const slices_args a, vec2 span)
 {
     slices s;
     s.start = span.x;
@@ -30,13 +30,13 @@ slices slices_of(slices_args a, vec2 span)
     return s;
 }
 
-float slice_at(slices_args a, slices s, int i)
+float slice_at(const slices_args a, const slices s, int i)
 {
     return s.first + float(i) * a.distance;
 }
 
 // The part of the ray that slice i stands for.
-vec2 slice_span(slices_args a, slices s, int i)
+vec2 slice_span(const slices_args a, const slices s, int i)
 {
     const float at = slice_at(a, s, i);
     return vec2(i == 0 ? 0.0 : at - 0.5 * a.distance, i == s.count - 1 ? s.end : at + 0.5 * a.distance);
@@ -45,7 +45,7 @@ vec2 slice_span(slices_args a, slices s, int i)
 // How many slices after a sample are empty for sure, in all directions. `away`: the distance to where density begins
 // (voxel_distance with `reach`), blended between the centres of eight voxels like the density: so at the sample it is too
 // large by half a voxel's diagonal at most, which `margin` is.
-int slices_skipped(slices_args a, float away)
+int slices_skipped(const slices_args a, float away)
 {
     return int(max((away - a.margin) / a.distance, 0.0));
 }

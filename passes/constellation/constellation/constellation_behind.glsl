@@ -47,7 +47,7 @@ behind behind_pixel(ivec2 pixel, vec3 direction)
 }
 
 // Beyond this nothing is seen of the medium, m.
-float behind_end(behind b)
+float behind_end(const behind b)
 {
     float end = b.host;
     if (constellation_has(CONSTELLATION_SURFACE)) {

@@ -32,7 +32,7 @@ vec3 transmittance_towards(vec3 p, vec3 towards, float reach)
 }
 
 // Radiance per metre and sigma_s that the light sends towards the eye from p; `view`: the direction of the camera's ray.
-vec3 scattered_of_light(listed_light l, vec3 p, vec3 view, sample_point s)
+vec3 scattered_of_light(const listed_light l, vec3 p, vec3 view, const sample_point s)
 {
     vec3 towards = -l.direction, color = l.color;
     float reach = 3.4e38;
@@ -61,7 +61,7 @@ vec3 scattered_of_light(listed_light l, vec3 p, vec3 view, sample_point s)
 }
 
 // Of the dispatch's lights.
-vec3 scattered_light(vec3 p, vec3 view, sample_point s)
+vec3 scattered_light(vec3 p, vec3 view, const sample_point s)
 {
     const uvec4 head = texelFetch(light_list_texels, 0);
     vec3 sum = vec3(0.0);

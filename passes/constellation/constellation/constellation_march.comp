@@ -62,7 +62,7 @@ ray_state ray_state_load(ivec2 pixel)
     return ray_state(a.rgb, b.rgb, imageLoad(state_uncovered, pixel).rgb, b.a, int(a.a));
 }
 
-void ray_state_store(ivec2 pixel, ray_state r)
+void ray_state_store(ivec2 pixel, const ray_state r)
 {
     imageStore(state_light, pixel, vec4(r.light, float(r.next)));
     imageStore(state_through, pixel, vec4(r.through, r.at));
@@ -79,7 +79,7 @@ void add_surface(inout ray_state r, vec3 radiance, float share, vec3 left)
 }
 
 // Surfaces between `to` and where the ray is.
-void add_surfaces_behind(inout ray_state r, behind b, float to)
+void add_surfaces_behind(inout ray_state r, const behind b, float to)
 {
     if (constellation_has(CONSTELLATION_SURFACE)) {
         [[unroll]] for (uint i = 0u; i < BEHIND_MAX; i++) {
@@ -91,7 +91,7 @@ void add_surfaces_behind(inout ray_state r, behind b, float to)
     }
 }
 
-ray_state ray_state_begin(ivec2 pixel, vec3 direction, behind b, slices s)
+ray_state ray_state_begin(ivec2 pixel, vec3 direction, const behind b, const slices s)
 {
     ray_state r;
     r.light = vec3(0.0);
@@ -108,7 +108,7 @@ ray_state ray_state_begin(ivec2 pixel, vec3 direction, behind b, slices s)
 }
 
 // What slice i brings, `s.extinction` etc. its medium at p.
-void add_slice(inout ray_state r, behind b, slices cut, int i, vec3 p, vec3 view, sample_point s)
+void add_slice(inout ray_state r, const behind b, const slices cut, int i, vec3 p, vec3 view, const sample_point s)
 {
     const vec2 span = slice_span(args.slices, cut, i);
     const float ds = max(span.y - span.x, 0.0);
@@ -148,7 +148,7 @@ void add_slice(inout ray_state r, behind b, slices cut, int i, vec3 p, vec3 view
 }
 
 // Where the mean transmittance falls to 1/2, m from the eye, or infinity: the same slices from the front.
-float half_distance(vec3 uvw, vec3 along, slices cut)
+float half_distance(vec3 uvw, vec3 along, const slices cut)
 {
     float found = TYN_INFINITY;
     vec3 depth = vec3(0.0);

@@ -30,23 +30,23 @@ gradient_grid gradient_grid_of(uint level)
     return grid;
 }
 
-uint gradient_points(gradient_grid grid)
+uint gradient_points(const gradient_grid grid)
 {
     return uint(grid.size.x * grid.size.y * grid.size.z);
 }
 
-uint gradient_index(gradient_grid grid, ivec3 at)
+uint gradient_index(const gradient_grid grid, ivec3 at)
 {
     return uint((at.z * grid.size.y + at.y) * grid.size.x + at.x);
 }
 
-ivec3 gradient_at(gradient_grid grid, uint index)
+ivec3 gradient_at(const gradient_grid grid, uint index)
 {
     const uint row = index / uint(grid.size.x);
     return ivec3(index % uint(grid.size.x), row % uint(grid.size.y), row / uint(grid.size.y));
 }
 
-vec3 gradient_place(gradient_grid grid, ivec3 at)
+vec3 gradient_place(const gradient_grid grid, ivec3 at)
 {
     return (vec3(at) + 0.5) * grid.spacing;
 }

@@ -42,7 +42,7 @@ float mean3(vec3 v)
 }
 
 // `x`: where it is.
-gradient_sample sample_of(uint from, gradient_grid grid, vec3 x)
+gradient_sample sample_of(uint from, const gradient_grid grid, vec3 x)
 {
     gradient_sample s;
     s.light = traced[from];

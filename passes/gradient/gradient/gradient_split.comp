@@ -19,7 +19,7 @@ TYN_UPDATE(3, entries, uint entries[]);
 TYN_UPDATE(4, states, uint states[]);
 TYN_UPDATE(5, counters, counters_block counters);
 
-void list(gradient_grid next, uint point)
+void list(const gradient_grid next, uint point)
 {
     const uint level = args.level + 1u;
     if (atomicOr(states[next.first + point], GRADIENT_IS_LISTED) == 0u) {

@@ -33,7 +33,7 @@ listed_light listed_light_of(uint n)
 }
 
 // Share of a lamp's intensity in a direction of travel, unit.
-float listed_light_lobe(listed_light l, vec3 along)
+float listed_light_lobe(const listed_light l, vec3 along)
 {
     light_block lobe;
     lobe.kind = l.kind;

@@ -66,7 +66,7 @@ sky_sum sum_of(ivec2 first, ivec2 end)
 }
 
 // Is the region longer along x, where a texel is as wide as the cosine of the latitude makes it?
-bool is_wide(region r)
+bool is_wide(const region r)
 {
     const float middle = 0.5 * (polar_of(r.first.y) + polar_of(r.end.y));
     const float width = float(r.end.x - r.first.x) / float(SKY_SUMS_WIDTH) * 2.0 * sin(middle);
@@ -82,7 +82,7 @@ region region_of(ivec2 first, ivec2 end)
     return region(first, end, single ? -1.0 : energy);
 }
 
-constellation_light light_of(region r)
+constellation_light light_of(const region r)
 {
     const sky_sum s = sum_of(r.first, r.end);
     const float middle = 0.5 * (polar_of(r.first.y) + polar_of(r.end.y));

@@ -61,7 +61,7 @@ lpv_medium lpv_medium_of(vec4 cell, float dx, uint extinction)
 }
 
 // (P, F) of a cell -> what goes along links of a shell: gamma (x + 3 m.yzw).
-vec4 lpv_sent(vec4 light, lpv_medium m, float g, uint shell)
+vec4 lpv_sent(vec4 light, const lpv_medium m, float g, uint shell)
 {
     return light * vec2(m.keep[shell] + m.scatter, m.keep[shell] + m.scatter * g).xyyy;
 }

@@ -46,7 +46,7 @@ float bound_of_all()
 }
 
 // The cell in front of a surface: half an edge off it, or more, until its centre is on that side.
-ivec3 cell_before(lattice_box box, vec3 p, vec3 n)
+ivec3 cell_before(const lattice_box box, vec3 p, vec3 n)
 {
     vec3 x = lattice_from_m(box, p);
     ivec3 c = ivec3(floor(x + 0.5 * n));
@@ -58,7 +58,7 @@ ivec3 cell_before(lattice_box box, vec3 p, vec3 n)
 }
 
 // Is no wall between q and the centre of a cell, as far as the walls in either cell tell?
-bool same_side(lattice_box box, vec3 q, walls_planes around, ivec3 c)
+bool same_side(const lattice_box box, vec3 q, const walls_planes around, ivec3 c)
 {
     vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
     return walls_behind(walls_planes_of(lattice_index(box, c)), q) == 0u && walls_behind(around, q) == walls_behind(around, centre);
@@ -66,7 +66,7 @@ bool same_side(lattice_box box, vec3 q, walls_planes around, ivec3 c)
 
 // The cell for light that starts at q, off a surface: `c`, or if a wall is between (beside an edge the cell in front of one
 // wall may have its centre behind the other) the nearest around that is not cut off. Light is never dropped.
-ivec3 cell_open(lattice_box box, vec3 q, vec3 n, ivec3 c)
+ivec3 cell_open(const lattice_box box, vec3 q, vec3 n, ivec3 c)
 {
     ivec3 own = clamp(ivec3(floor(lattice_from_m(box, q))), ivec3(0), box.dims - 1), found = c;
     walls_planes around = walls_planes_of(lattice_index(box, own));

@@ -33,7 +33,7 @@ ivec4 part_of(bool light_is, uint turn, uint quad)
 }
 
 // Of a cell within the medium's box, m^3.
-float volume_of(lattice_box box, ivec3 c)
+float volume_of(const lattice_box box, ivec3 c)
 {
     vec3 lo = max(lattice_to_m(box, vec3(c)), vec3(0.0)), hi = min(lattice_to_m(box, vec3(c + 1)), medium.extent);
     vec3 size = max(hi - lo, 1e-6 * box.dx);

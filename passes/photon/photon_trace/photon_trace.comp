@@ -74,7 +74,7 @@ void add_flux(uint at, int value)
 }
 
 // `weight`: of the place among those of its cell.
-void deposit(photon p, float weight, float bound, uint slot, uvec4 bits)
+void deposit(const photon p, float weight, float bound, uint slot, uvec4 bits)
 {
     vec3 light = p.sent * p.passed * (weight * plan.per_unit / bound);
     light *= p.path.depth == 0u ? p.direct : vec3(1.0);
@@ -116,7 +116,7 @@ bool take_off(inout photon p, inout rng_state rng)
     return span.x < span.y;
 }
 
-float bound_of(photon p)
+float bound_of(const photon p)
 {
     float bound = media_bounds(p.walk.cell).y;
     return max(bound * (p.similar ? plan.reduced : plan.scaled), plan.least);
@@ -228,7 +228,7 @@ bool scatter(inout photon p, inout rng_state rng)
 }
 
 // Meets a surface. False: nothing is left.
-bool reflect_there(inout photon p, surface_hit ahead, vec3 period, inout rng_state rng)
+bool reflect_there(inout photon p, const surface_hit ahead, vec3 period, inout rng_state rng)
 {
     uvec4 bits = rng_next(rng);
     surface_finding found = surface_find(ahead, period, p.path.way);

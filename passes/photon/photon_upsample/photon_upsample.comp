@@ -37,13 +37,13 @@ float has_medium(float extinction)
     return args.weighted == 0u || extinction > 1e-3 * args.majorant ? 1.0 : 1e-6;
 }
 
-photon_light light_of(lattice_box box, uint lobe, ivec3 c)
+photon_light light_of(const lattice_box box, uint lobe, ivec3 c)
 {
     return light[lobe * args.coarse.x * args.coarse.y * args.coarse.z + lattice_index(box, c)];
 }
 
 // Of the eight cells around, trilinear; of the lobe's direction weighted with its light.
-photon_light light_between(lattice_box box, uint lobe, vec3 x)
+photon_light light_between(const lattice_box box, uint lobe, vec3 x)
 {
     ivec3 lo = ivec3(floor(x - 0.5));
     vec3 t = x - 0.5 - vec3(lo);

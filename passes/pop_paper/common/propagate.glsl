@@ -47,19 +47,19 @@ propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells, uint c
 }
 
 // Edge of a cell across the light over that along it; 1: a cube.
-float propagate_stretch(propagate_grid grid)
+float propagate_stretch(const propagate_grid grid)
 {
     return grid.cell / grid.along;
 }
 
 // Cell units <-> M. Cell i spans [i, i + 1].
-vec3 propagate_to_m(propagate_grid grid, vec3 cell)
+vec3 propagate_to_m(const propagate_grid grid, vec3 cell)
 {
     cell *= vec3(grid.cell, grid.cell, grid.along);
     return grid.origin + grid.across_u * cell.x + grid.across_v * cell.y + grid.direction * cell.z;
 }
 
-propagate_place propagate_place_of(propagate_grid grid)
+propagate_place propagate_place_of(const propagate_grid grid)
 {
     propagate_place place;
     mat3 axes = mat3(grid.across_u, grid.across_v, grid.direction) / grid.cell;
@@ -74,7 +74,7 @@ propagate_place propagate_place_of(propagate_grid grid)
 
 // Position in cells of a grid, kept half a cell off its faces: where a linear fetch reads no cell
 // beyond them.
-vec3 propagate_at(propagate_place place, vec3 p)
+vec3 propagate_at(const propagate_place place, vec3 p)
 {
     vec3 at = vec3(dot(place.rows[0].xyz, p) + place.rows[0].w, dot(place.rows[1].xyz, p) + place.rows[1].w,
                    dot(place.rows[2].xyz, p) + place.rows[2].w);
@@ -82,7 +82,7 @@ vec3 propagate_at(propagate_place place, vec3 p)
     return clamp(at, vec3(0.5), size - 0.5);
 }
 
-bool propagate_inside(propagate_grid grid, ivec3 cell)
+bool propagate_inside(const propagate_grid grid, ivec3 cell)
 {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(uvec3(cell), grid.size));
 }
@@ -138,12 +138,12 @@ propagate_cell propagate_cell_of(vec4 stored)
 const vec4 propagate_no_cell = vec4(0.0, 0.0, 0.0, -2.0);
 
 // What the way through half a cell leaves of L, and takes of a.
-float propagate_kept(propagate_cell cell)
+float propagate_kept(const propagate_cell cell)
 {
     return exp(-0.5 * cell.sigma_a);
 }
 
-float propagate_more_spread(propagate_cell cell, float spread, uint rate)
+float propagate_more_spread(const propagate_cell cell, float spread, uint rate)
 {
     return spread + (1.0 - spread) * propagate_loss(0.5 * propagate_decay(cell.sigma_s, cell.g, rate));
 }
@@ -151,7 +151,7 @@ float propagate_more_spread(propagate_cell cell, float spread, uint rate)
 // What leaves a cell that holds `light` in its middle: ahead, to each of the four sides, behind; and its
 // spread. Half of a hop lies in either cell, and what happens on the way multiplies: so a cell can do
 // its own half for all of its neighbours.
-vec4 propagate_outgoing(propagate_cell cell, float light, float spread, uint rate)
+vec4 propagate_outgoing(const propagate_cell cell, float light, float spread, uint rate)
 {
     vec4 state = propagate_state(light, spread, PROPAGATE_CONE);
     float kept = propagate_kept(cell);
@@ -165,7 +165,7 @@ vec4 propagate_outgoing(propagate_cell cell, float light, float spread, uint rat
 // absorption happens on it. What is handed on is power either way, whose fractions sum to 1.
 
 // The cell as light crosses it sideways.
-propagate_cell propagate_sideways(propagate_cell cell, float stretch)
+propagate_cell propagate_sideways(const propagate_cell cell, float stretch)
 {
     return propagate_cell(cell.sigma_s * stretch, cell.sigma_a * stretch, cell.g, cell.mu);
 }
@@ -177,7 +177,7 @@ float propagate_way(vec4 state, float stretch)
 }
 
 // Light that comes to the faces of a cell and its product with its spread: the same in the middle.
-vec2 propagate_arrived(propagate_cell cell, vec2 light, uint rate)
+vec2 propagate_arrived(const propagate_cell cell, vec2 light, uint rate)
 {
     float arrived = light.x * propagate_kept(cell);
     float spread = light.x > 0.0 ? light.y / light.x : 1.0;
@@ -185,7 +185,7 @@ vec2 propagate_arrived(propagate_cell cell, vec2 light, uint rate)
 }
 
 // As propagate_outgoing, of a cell in the state `state`; `beside` is the spread of what goes to the sides.
-vec4 propagate_outgoing_stretched(propagate_cell cell, float stretch, vec4 state, uint rate, out float beside)
+vec4 propagate_outgoing_stretched(const propagate_cell cell, float stretch, vec4 state, uint rate, out float beside)
 {
     propagate_cell across = propagate_sideways(cell, stretch);
     vec2 kept = vec2(propagate_kept(cell), propagate_kept(across));
@@ -197,7 +197,7 @@ vec4 propagate_outgoing_stretched(propagate_cell cell, float stretch, vec4 state
 // ---- what the eye gets (Eq 8) -----------------------------------------------------------------------
 
 // The direction from a cell to the eye.
-vec3 propagate_to_eye(camera_block camera, vec3 p)
+vec3 propagate_to_eye(const camera_block camera, vec3 p)
 {
     vec3 v = camera.origin - p;
     float r = length(v);

@@ -11,7 +11,7 @@
 // ---- where the cells are ------------------------------------------------------------------------
 
 // M direction of a point of the map, not normalised: the inverse of orthogonal rows.
-vec3 propagate_radial_heading(propagate_radial_grid grid, vec2 e)
+vec3 propagate_radial_heading(const propagate_radial_grid grid, vec2 e)
 {
     vec3 m = octahedral_point(e), r0 = grid.to_map[0], r1 = grid.to_map[1], r2 = grid.to_map[2];
     return r0 * (m.x / dot(r0, r0)) + r1 * (m.y / dot(r1, r1)) + r2 * (m.z / dot(r2, r2));
@@ -19,7 +19,7 @@ vec3 propagate_radial_heading(propagate_radial_grid grid, vec2 e)
 
 // Solid angle of an area du dv of the map: dOmega = det / |x|^3 du dv, x = the heading; a face of the
 // octahedron is a plane whose cone has the volume du dv / 3, and a linear map multiplies that by det.
-float propagate_radial_solid_angle(propagate_radial_grid grid, vec3 heading)
+float propagate_radial_solid_angle(const propagate_radial_grid grid, vec3 heading)
 {
     float det = inversesqrt(dot(grid.to_map[0], grid.to_map[0]) * dot(grid.to_map[1], grid.to_map[1]) *
                             dot(grid.to_map[2], grid.to_map[2]));
@@ -35,7 +35,7 @@ ivec2 propagate_radial_across(ivec2 t, int cells)
 }
 
 // Inner and outer radius of a layer.
-vec2 propagate_radial_span(propagate_radial_grid grid, int layer)
+vec2 propagate_radial_span(const propagate_radial_grid grid, int layer)
 {
     return layer == 0 ? vec2(0.0, grid.inner)
                       : grid.inner * pow(vec2(grid.growth), vec2(layer - 1, layer));
@@ -52,7 +52,7 @@ uint propagate_radial_index(ivec3 cell, uint stack, uint cells, uint layers)
 // they are in the mean, so that light that is equal on a shell stays so. The ball has its radius as half a cell.
 
 // What leaves a cell outwards, to each side and inwards; its spread. All of the ball's light goes outwards.
-vec4 propagate_radial_outgoing(propagate_cell cell, bool ball, float light, float spread, uint rate)
+vec4 propagate_radial_outgoing(const propagate_cell cell, bool ball, float light, float spread, uint rate)
 {
     return ball ? vec4(light * propagate_kept(cell), 0.0, 0.0, propagate_more_spread(cell, spread, rate))
                 : propagate_outgoing(cell, light, spread, rate);

@@ -9,20 +9,20 @@ const float IMPORTANCE_PI = 3.14159265358979;
 // ---- placing the grid -----------------------------------------------------------------------------
 
 // Position in camera coordinates: along right, up, forward.
-vec3 importance_camera_vector(importance_grid grid, vec3 v)
+vec3 importance_camera_vector(const importance_grid grid, vec3 v)
 {
     return vec3(dot(grid.right, v), dot(grid.up, v), dot(grid.forward, v));
 }
 
 // How much wider a pencil of rays is at depth z than (s, t) say.
-float importance_widening(importance_grid grid, float z)
+float importance_widening(const importance_grid grid, float z)
 {
     return grid.orthographic != 0u ? 1.0 : z;
 }
 
 // Around what the camera sees of the box [0, extent], and as much of it beside the picture as light
 // can take a detour through.
-importance_grid importance_grid_of(camera_block camera, vec3 extent)
+importance_grid importance_grid_of(const camera_block camera, vec3 extent)
 {
     importance_grid grid;
     grid.origin = camera.origin;
@@ -79,13 +79,13 @@ importance_grid importance_grid_of(camera_block camera, vec3 extent)
 }
 
 // Depth of a layer in [0, 1] of the grid, and back. Layers of a pyramid grow with their width.
-float importance_depth(importance_grid grid, float layer)
+float importance_depth(const importance_grid grid, float layer)
 {
     return grid.orthographic != 0u ? mix(grid.near, grid.far, layer)
                                    : grid.near * exp2(grid.octaves * layer);
 }
 
-float importance_layer(importance_grid grid, float z)
+float importance_layer(const importance_grid grid, float z)
 {
     z = max(z, grid.near);
     return grid.orthographic != 0u ? (z - grid.near) / (grid.far - grid.near)
@@ -93,7 +93,7 @@ float importance_layer(importance_grid grid, float z)
 }
 
 // Camera coordinates -> grid [0, 1]^3; what is before the first layer is in it.
-vec3 importance_from_camera(importance_grid grid, vec3 p)
+vec3 importance_from_camera(const importance_grid grid, vec3 p)
 {
     vec2 at = p.xy / importance_widening(grid, max(p.z, grid.near));
     return vec3((at - grid.low) / (grid.high - grid.low), importance_layer(grid, p.z));
@@ -106,7 +106,7 @@ vec3 importance_from_camera(importance_grid grid, vec3 p)
 
 // What a cell of power `power` and mean cosine 1 - spread hands on; adds its way to the track: half a
 // hop in, half a hop out.
-importance_light importance_leave(importance_cell cell, float power, float spread, inout vec2 track)
+importance_light importance_leave(const importance_cell cell, float power, float spread, inout vec2 track)
 {
     vec4 state = propagate_state(power, spread, PROPAGATE_CONE);
     float way = power * mix(cell.along, cell.across, 4.0 * state.z);

@@ -18,7 +18,7 @@ layout(set = 0, binding = 12) uniform sampler3D vpl_seen;
 TYN_ARGS(merge_grids_args args);
 
 // Mean of sigma_s over a cell and the channels: a trilinear fetch is a mean over two voxels.
-float guide(lattice_box box, vec3 cell)
+float guide(const lattice_box box, vec3 cell)
 {
     float voxel = min(medium.voxel.x, min(medium.voxel.y, medium.voxel.z));
     int along = clamp(int(ceil(0.5 * box.dx / voxel - 1e-3)), 1, 16);
@@ -48,7 +48,7 @@ float inverse_square(float r, float h)
 }
 
 // Light of a local light at a point, per intensity and channel, times r^2.
-vec3 seen_from(propagate_radial_place place, merge_grids_radial grids, sampler3D found_in, uint n,
+vec3 seen_from(const propagate_radial_place place, const merge_grids_radial grids, sampler3D found_in, uint n,
                vec3 away, float r)
 {
     float k = r * place.per_inner;
@@ -67,7 +67,7 @@ vec3 seen_from(propagate_radial_place place, merge_grids_radial grids, sampler3D
 }
 
 // Mean over a cell of edge dx: the cells of the radial grid are small next to the light.
-vec3 radial_mean(propagate_radial_place place, merge_grids_radial grids, sampler3D found_in, uint n,
+vec3 radial_mean(const propagate_radial_place place, const merge_grids_radial grids, sampler3D found_in, uint n,
                  vec3 middle, float dx)
 {
     float distant = length(middle - place.position);

@@ -20,14 +20,14 @@ const float FOR_EVER = 3e38;
 
 // Distance from the light of the first surface in the direction d (M, unit), m.
 #ifdef OF_VPLS
-float reach(uint n, propagate_radial_grid grid, vec3 d)
+float reach(uint n, const propagate_radial_grid grid, vec3 d)
 {
     vpl_map map = vpl_map_of(n - args.num_lamps, grid.light.direction);
     vec2 at = floor(vpl_map_place(d * map.frame) * map.last + 0.5); // of the rays around, the nearest
     return map.last > 0.0 ? texelFetch(vpl_distances, ivec2(map.corner + at), 0).r : FOR_EVER;
 }
 #else
-float reach(uint n, propagate_radial_grid grid, vec3 d)
+float reach(uint n, const propagate_radial_grid grid, vec3 d)
 {
     if (n >= TYN_SHADOW_LAMPS) {
         return FOR_EVER;

@@ -59,7 +59,7 @@ propagate_radial_grid grid_of(light_block light, bool used)
 }
 
 // What starts in a texel and its solid angle, means over points spread evenly.
-vec2 integrals(propagate_radial_grid grid, ivec2 texel, int along)
+vec2 integrals(const propagate_radial_grid grid, ivec2 texel, int along)
 {
     vec2 sum = vec2(0.0);
     for (int n = 0; n < along * along; n++) {

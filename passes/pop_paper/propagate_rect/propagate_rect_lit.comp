@@ -22,7 +22,7 @@ const float FOR_EVER = 3e38;
 
 // Distance from a point of the medium (M) along the light to the first surface that it meets, m; below 0: before the point.
 #ifdef TRACED
-float reach(uint n, propagate_grid grid, vec3 p)
+float reach(uint n, const propagate_grid grid, vec3 p)
 {
     vec3 o = surface_transform(surfaces.to_world, p), d = surface_turn(surfaces.to_world, grid.direction);
     float before = length(max(abs(o - surfaces.lo), abs(o - surfaces.hi))); // there is no surface farther back
@@ -31,7 +31,7 @@ float reach(uint n, propagate_grid grid, vec3 p)
                                                                                              : FOR_EVER;
 }
 #else
-float reach(uint n, propagate_grid grid, vec3 p)
+float reach(uint n, const propagate_grid grid, vec3 p)
 {
     shadow_light l = shadow_light_of(n);
     vec3 q = shadow_frame(l, p), along = shadow_frame_direction(l, grid.direction);

@@ -15,7 +15,7 @@ TYN_ARGS(propagate_rect_args args);
 // (0, 1) that the text calls proportional and very similar to the solid angle of the ordinate's region,
 // is read as the region's share of the sphere in units of the mean share 1 / N: with beta = 1 regions of
 // the mean size have their exact mean cosine, 1 - 1 / N.
-float prefiltered(ordinate o, uint count)
+float prefiltered(const ordinate o, uint count)
 {
     if (args.prefilter == TYN_PROPAGATE_PREFILTER_HEURISTIC) {
         float share = min(o.solid_angle / (4.0 * HG_PI) * float(count), 1.0);

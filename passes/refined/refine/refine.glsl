@@ -86,12 +86,12 @@ vec3 refine_weight(vec3 pop, vec3 mean)
     return mix(vec3(0.0), 1.0 / refine_unit(pop, mean), greaterThan(mean, vec3(1e-18)));
 }
 
-refine_changes refine_add_changes(refine_changes a, refine_changes b, float w)
+refine_changes refine_add_changes(const refine_changes a, const refine_changes b, float w)
 {
     return refine_changes(a.difference + w * b.difference, a.now + w * b.now, a.before + w * b.before);
 }
 
-refine_sums refine_add(refine_sums a, refine_sums b, float w)
+refine_sums refine_add(const refine_sums a, const refine_sums b, float w)
 {
     return refine_sums(a.cells + w * b.cells, a.light + w * b.light, a.confirmed + w * b.confirmed, a.doubt + w * b.doubt,
                        a.change + w * b.change, a.residual + w * b.residual, a.noise + w * b.noise,
@@ -109,13 +109,13 @@ vec2 refine_doubt(vec2 excess, float share)
 
 // Estimated square errors of pop, and of pop with that share of the change; below 0 by noise. For a fit that is given they are
 // unbiased.
-vec2 refine_squares(refine_sums s, float share)
+vec2 refine_squares(const refine_sums s, float share)
 {
     const float pop = s.residual - s.noise;
     return vec2(pop, share * share * s.change - 2.0 * share * s.confirmed + pop);
 }
 
-refine_residuals refine_add(refine_residuals a, refine_residuals b, float w)
+refine_residuals refine_add(const refine_residuals a, const refine_residuals b, float w)
 {
     return refine_residuals(a.difference + w * b.difference, a.noise + w * b.noise, a.fit + w * b.fit, a.less + w * b.less,
                             a.variance + w * w * b.variance);
@@ -125,7 +125,7 @@ const refine_residuals REFINE_NO_RESIDUALS = refine_residuals(0.0, 0.0, vec3(0.0
 
 // By what the fit is to be multiplied, so that its sum over a window is the samples', as far as these differ by more than their noise
 // (James and Stein). `level`: by what it is multiplied already.
-vec3 refine_level(refine_residuals sum, vec3 level, float doubt)
+vec3 refine_level(const refine_residuals sum, vec3 level, float doubt)
 {
     const vec3 fit = level * sum.fit, less = sum.less + sum.fit - fit;
     const vec3 share = clamp(1.0 - doubt * sum.variance / max(less * less, 1e-30), 0.0, 1.0);

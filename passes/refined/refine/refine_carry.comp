@@ -9,7 +9,7 @@ TYN_UNIFORM(2, camera, camera_block camera);
 TYN_READ(3, seen, camera_block seen);
 
 // Image position that shows `place`, as camera_ray_through has it; `away`: how far before the camera it is, m.
-vec2 position_in(camera_block by, vec3 place, out float away)
+vec2 position_in(const camera_block by, vec3 place, out float away)
 {
     const vec3 to = place - by.origin;
     away = camera_select(by, 1.0, dot(to, by.forward));

@@ -8,7 +8,7 @@ layout(binding = 4, rgba32f) writeonly uniform image2D final_image;
 TYN_WRITE(5, sums, refine_sums sums[]);
 shared refine_sums part[64];
 
-refine_fit refine_plus(refine_fit a, refine_fit b, float w)
+refine_fit refine_plus(const refine_fit a, const refine_fit b, float w)
 {
     return refine_fit(a.pop + w * b.pop, a.single + w * b.single, a.one + w * b.one);
 }

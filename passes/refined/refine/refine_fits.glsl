@@ -43,7 +43,7 @@ void refine_fits_of(uint window, uint h, uvec2 cell, out refine_fit alone, out r
 }
 
 // What a fit adds to pop's picture in a cell.
-vec3 refine_change(refine_fit fit, refine_cell_values v)
+vec3 refine_change(const refine_fit fit, const refine_cell_values v)
 {
     return fit.pop * v.pop + fit.single * v.single + fit.one * totals.mean;
 }

@@ -9,7 +9,7 @@ shared float errors[REFINE_CANDIDATES][64];
 const float MOST = 100.0;
 
 // Of the changes that each part says, the mean of three against the fourth.
-float refine_error(vec3 change[REFINE_PARTS], refine_cell_values v)
+float refine_error(vec3 change[REFINE_PARTS], const refine_cell_values v)
 {
     vec3 sum = vec3(0.0), e = vec3(0.0);
     for (uint k = 0u; k < uint(REFINE_PARTS); k++) {

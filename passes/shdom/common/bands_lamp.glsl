@@ -7,7 +7,7 @@ struct bands_lamp {
     beam_tau tau;
 };
 
-bands_lamp bands_lamp_at(uint n, lattice_box box, ivec3 cell)
+bands_lamp bands_lamp_at(uint n, const lattice_box box, ivec3 cell)
 {
     vec3 away = lattice_to_m(box, vec3(cell) + 0.5) - radials[n].light.position;
     float r2 = dot(away, away), r = sqrt(r2), d2 = box.dx * box.dx;

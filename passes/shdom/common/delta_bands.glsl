@@ -30,7 +30,7 @@ bands_medium bands_medium_of(vec4 cell, uint bands)
 }
 
 // (1 - f) sigma_s times the moment l, 1/m.
-float bands_scattering(bands_medium m, int l)
+float bands_scattering(const bands_medium m, int l)
 {
     return m.sigma_s * (bands_power(m.g, l) - m.f);
 }
@@ -44,7 +44,7 @@ float bands_cone(float mean_cosine, int l)
 
 #ifdef TYN_BEAM_TAU_GLSL
 // Mean of what is left of a light in a cell of the edge dx.
-float bands_transmittance(beam_tau tau, int ch, bands_medium m, uint bands, float dx)
+float bands_transmittance(const beam_tau tau, int ch, const bands_medium m, uint bands, float dx)
 {
     float f = tau.s[ch] > 0.0 ? clamp(1.0 - tau.p[ch] / tau.s[ch], 0.0, 1.0) : 0.0; // at two bands
     float scaled = f > 0.0 ? 1.0 - pow(f, 0.5 * float(bands)) : 1.0;

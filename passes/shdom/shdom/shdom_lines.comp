@@ -10,7 +10,7 @@ layout(binding = 2) uniform samplerBuffer extinction_words; // [cell]
 TYN_WRITE(3, lines, float radiance[]);                      // [ordinate of the batch][slice][line]
 
 // Source, W/(m^3 sr), and extinction, 1/m, at a place of a slice: between four cells.
-vec2 medium_at(shdom_lines lines, int first, int slice, vec2 at)
+vec2 medium_at(const shdom_lines lines, int first, int slice, vec2 at)
 {
     vec2 x = clamp(at - 0.5, vec2(0.0), vec2(lines.size.yz - 1));
     ivec2 lo = ivec2(x), hi = min(lo + 1, lines.size.yz - 1);

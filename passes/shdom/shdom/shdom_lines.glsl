@@ -27,7 +27,7 @@ shdom_lines shdom_lines_of(vec3 d, ivec3 dims, float dx)
 }
 
 // Of the cell (u, v) of a slice, counted as light meets them.
-int shdom_cell(shdom_lines lines, ivec3 dims, int slice, ivec2 at)
+int shdom_cell(const shdom_lines lines, ivec3 dims, int slice, ivec2 at)
 {
     ivec3 c;
     c[lines.axes.x] = lines.back ? lines.size.x - 1 - slice : slice;

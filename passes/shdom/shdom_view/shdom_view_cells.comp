@@ -45,7 +45,7 @@ void visit(int l, int k, float y)
 #include "../common/harmonics.glsl"
 
 // The phase function over a cone of light: its middle and six places around (a rule of degree 5 for discs).
-float cone_phase(phase p, vec3 direction, float mean_cosine, vec3 v)
+float cone_phase(const phase p, vec3 direction, float mean_cosine, vec3 v)
 {
     vec3 gap = v - direction;
     if (mean_cosine > 0.9999) {
@@ -64,7 +64,7 @@ float cone_phase(phase p, vec3 direction, float mean_cosine, vec3 v)
 }
 
 // What the solver has for it: (1 - f) times the phase function that is left, in its bands.
-float bands_phase(bands_medium m, float mean_cosine, float mu)
+float bands_phase(const bands_medium m, float mean_cosine, float mu)
 {
     float before = 0.0, p = 1.0, sum = 0.0;
     for (int l = 0; l < int(args.bands); l++) {
@@ -78,7 +78,7 @@ float bands_phase(bands_medium m, float mean_cosine, float mu)
 
 // What is to be added to the source function of the bands for light of irradiance 1, 1/m: of `marched` lights less what the march draws. `once`: what scatters
 // once.
-vec3 beyond_bands(bands_medium m[3], vec3 direction, float mean_cosine, vec3 v, beam_tau tau, bool marched, float dx, out vec3 once)
+vec3 beyond_bands(bands_medium m[3], vec3 direction, float mean_cosine, vec3 v, const beam_tau tau, bool marched, float dx, out vec3 once)
 {
     float mu = dot(direction, v), whole = 0.0, banded = 0.0;
     vec3 sum = vec3(0.0);

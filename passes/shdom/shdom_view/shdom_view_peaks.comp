@@ -16,7 +16,7 @@ layout(binding = 5) uniform sampler3D scattered;
 layout(binding = 6, rgba32f) uniform writeonly image3D seen;
 
 // Radiance that arrives at p, in cells, along v: steps of half a cell back to the box.
-vec3 arriving(lattice_box box, vec3 p, vec3 v)
+vec3 arriving(const lattice_box box, vec3 p, vec3 v)
 {
     vec3 size = vec3(args.dims);
     vec2 way = ray_box(p, ray_inverse(-v), vec3(0.0), size);
