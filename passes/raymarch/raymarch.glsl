@@ -209,8 +209,9 @@ struct march_waiting {
     bool last_near;             // the last step is
 };
 
-// Not an argument, as some compilers copy arrays that are.
+// Not arguments, as some compilers copy arrays that are.
 march_waiting waiting;
+march_sun ray_suns[TYN_BEAM_MAX_SUNS]; // as the ray sees them
 
 bool march_has_room()
 {
@@ -224,9 +225,8 @@ struct march_step {
 };
 
 // Light of suns and lamps that the step scatters towards the eye.
-vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], const march_lamps lamps,
-                 const march_medium unit, const march_medium m, vec3 origin, vec3 direction, const march_step b,
-                 inout march_shadows shadow, inout vec3 single)
+vec3 march_beams(const march_lamps lamps, const march_medium unit, const march_medium m, vec3 origin, vec3 direction,
+                 const march_step b, inout march_shadows shadow, inout vec3 single)
 {
     vec3 light = vec3(0.0);
     // Selections, as a loop whose trip count is a constant 0 stays in the module (specialize.h).
@@ -234,15 +234,15 @@ vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_
         for (uint n = 0u; n < raymarch_num_suns; n++) {
             float lit = 1.0;
             if (raymarch_has(RAYMARCH_SHADOWS)) {
-                lit = march_lit_of(true, suns[n].map, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
+                lit = march_lit_of(true, ray_suns[n].map, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
             }
-            light += march_sunlight(suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
+            light += march_sunlight(ray_suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
                                     lit * b.weight_scaled, single);
         }
     }
     if (raymarch_num_lamps > 0u) {
         [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-            light += march_lamplight(kept[n], 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight, b.weight_scaled,
+            light += march_lamplight(ray_lamps[n], 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight, b.weight_scaled,
                                      shadow, single);
         }
     }
@@ -327,20 +327,18 @@ march_step march_through(const march_medium m, float ds, bool is, const march_li
 march_result march_ray(inout march_state state, vec3 origin, vec3 direction, float end, float start)
 {
     march_medium unit = march_medium_of(medium_of_density(1.0));
-    march_sun suns[TYN_BEAM_MAX_SUNS];
     if (raymarch_num_suns > 0u) {
         for (uint n = 0u; n < raymarch_num_suns; n++) {
-            suns[n] = march_sun_of(n, unit, origin, direction);
+            ray_suns[n] = march_sun_of(n, unit, origin, direction);
         }
     }
     float pixel = camera_pixel(camera).x;
     bool orthographic = camera.orthographic != 0u;
     march_lamps lamps = march_lamps(origin, direction, start, orthographic ? pixel : 0.0,
                                     orthographic ? 0.0 : pixel);
-    march_lamp kept[MARCH_LAMPS_KEPT];
     if (raymarch_num_lamps > 0u) {
         [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-            kept[n] = march_lamp_of(n, lamps);
+            ray_lamps[n] = march_lamp_of(n, lamps);
         }
     }
     march_near near = march_near_of(lamps, end);
@@ -368,7 +366,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                    march_has_room()) {
                 float ds = min(state.next, end - state.s);
                 if (raymarch_num_lamps > 0u) {
-                    ds = min(ds, march_lamp_step(lamps, kept, state.s));
+                    ds = min(ds, march_lamp_step(lamps, state.s));
                 }
                 m = march_medium_at(unit, line.medium0 + (state.s + 0.5 * ds) * line.medium1);
                 bool any = march_any(m);
@@ -390,7 +388,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             }
             if (found && raymarch_num_suns + raymarch_num_lamps > 0u) {
                 vec3 light =
-                    march_beams(suns, kept, lamps, unit, m, origin, direction, step, state.shadow, state.single);
+                    march_beams(lamps, unit, m, origin, direction, step, state.shadow, state.single);
                 state.radiance += light;
             }
         }

@@ -95,12 +95,14 @@ march_lamp march_lamp_of(uint n, const march_lamps ray)
     return lamp;
 }
 
-float march_lamp_step(const march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float s)
+march_lamp ray_lamps[MARCH_LAMPS_KEPT]; // as the ray sees them; not an argument, as in raymarch.glsl
+
+float march_lamp_step(const march_lamps ray, float s)
 {
     float least = TYN_INFINITY;
     vec3 p = ray.origin + s * ray.direction;
     [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-        vec3 away = p - kept[n].grid.light.position;
+        vec3 away = p - ray_lamps[n].grid.light.position;
         least = min(least, dot(away, away));
     }
     for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
