@@ -2,6 +2,7 @@
 #include "frame/context.h"
 #include "base/fault.h"
 #include "gpu/device.h"
+#include "gpu/needs.h"
 #include "registry/registry.h"
 #include "scene/check.h"
 
@@ -47,7 +48,7 @@ static tyn_result check_resume(const tyn_context *ctx, const tyn_view *view, uin
 uint32_t tyn_frame_most_pixels(const tyn_device *dev)
 {
     const uint32_t side = dev->properties.limits.maxImageDimension2D;
-    return side < 16384 ? side : 16384;
+    return side < TYN_MOST_SIDE ? side : TYN_MOST_SIDE;
 }
 
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)

@@ -125,13 +125,15 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     VkQueueFamilyProperties family = families[dev->queue_family];
     free(families);
     dev->timestamp_bits = family.timestampValidBits;
-    dev->graphics = (family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     if (!(family.queueFlags & VK_QUEUE_COMPUTE_BIT)) {
         return TYN_FAULT(&dev->log, TYN_ERR_PARAMS, "queue_family %u has no compute",
                          dev->queue_family);
     }
+    const uint64_t met = tyn_needs_of_device(&dev->vk, dev->physical_device, dev->queue_family);
+    dev->graphics = tyn_need_in(met, TYN_NEED_graphics);
+    dev->depth = tyn_need_in(met, TYN_NEED_D32_SFLOAT);
     char missing[256];
-    tyn_need_unmet(tyn_needs_of_device(&dev->vk, dev->physical_device, dev->queue_family), missing);
+    tyn_need_unmet(met, missing);
     if (missing[0]) {
         return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED, "device '%s' lacks %s",
                          dev->properties.deviceName, missing);

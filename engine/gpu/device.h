@@ -32,6 +32,7 @@ struct tyn_device {
     tyn_allocator allocator; // of the host, or none
     uint32_t timestamp_bits; // 0: no timestamps
     bool graphics;           // the queue family draws
+    bool depth;              // format D32_SFLOAT, which drawing takes
     uint64_t image_bytes;    // the most that an image in rgba32f may take; 0: not known
     bool separate_stencil;   // separateDepthStencilLayouts is enabled
     bool debug_names;

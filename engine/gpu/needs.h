@@ -6,6 +6,8 @@
 // A limit that kernels of some passes exceed on small devices (pipeline.c).
 #define TYN_NEED_REFUSED                                                                           \
     "a kernel that binds more than the device takes is refused when a scene needs it"
+#define TYN_NEED_LARGER "a scene that needs a larger one is refused in a line that names it"
+#define TYN_MOST_SIDE 16384 // of pictures, pixels
 #define TYN_NEED_BY_KIND "262144 if such a card is discrete, else 8192" // capacity.c
 
 // What a row is for, and the fallback without it; NULL: none, the device cannot be used.
@@ -28,6 +30,11 @@
     FORMAT(R32G32B32A32_SFLOAT, SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT, "filtered reads, and writes, of light", NULL) \
     QUEUE(graphics, (family->queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0, "drawing surfaces", "scenes with surfaces are refused") \
     QUEUE(timestamps, family->timestampValidBits != 0, "times of passes, and samples of a record by them", "no times in reports; samples of a record by an estimate") \
+    FORMAT(D32_SFLOAT, DEPTH_STENCIL_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, "depth of drawn surfaces and shadow maps, which kernels read", "scenes with surfaces are refused") \
+    LIMIT(maxImageDimension2D, TYN_MOST_SIDE, "pictures of 16384 pixels a side; shadow maps", "smaller pictures, fewer samples of surfaces; a map that is larger is refused in a line that names it") \
+    LIMIT(maxImageDimension3D, 2048, "volumes of 2048 voxels a side; light of several suns and lamps in one image", TYN_NEED_LARGER) \
+    LIMIT(maxStorageBufferRange, 134217728, "buffers of 128 MiB", NULL) \
+    LIMIT(maxTexelBufferElements, 33554432, "... read as texels of 4 bytes", TYN_NEED_LARGER) \
     LIMIT(maxComputeSharedMemorySize, 32768, "coarse levels of the lattice in one workgroup", "fewer cells in it") \
     LIMIT(maxPerStageDescriptorStorageImages, 11, "most images that a kernel writes", TYN_NEED_REFUSED) \
     LIMIT(maxPerStageDescriptorStorageBuffers, 10, "most buffers of a kernel", TYN_NEED_REFUSED) \

@@ -208,6 +208,12 @@ tyn_result tyn_variant_get(tyn_pipeline *p, const uint32_t *spec, tyn_variant **
                          "family %u is not",
                          k->name, dev->queue_family);
     }
+    if (k->raster && !dev->depth) {
+        return TYN_FAULT(&dev->log, TYN_ERR_UNSUPPORTED,
+                         "kernel '%s' draws surfaces: it needs depth in format D32_SFLOAT, which "
+                         "the device '%s' lacks",
+                         k->name, dev->properties.deviceName);
+    }
     pthread_mutex_lock(&p->compiler->lock);
     tyn_variant *v = find_variant(p, spec);
     if (!v && (v = calloc(1, sizeof *v))) {

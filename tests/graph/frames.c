@@ -207,6 +207,12 @@ static void drawing_needs_graphics(void **state)
     declare_drawing(f->g, (node_params){0});
     assert_int_equal(frame(f), TYN_ERR_UNSUPPORTED);
     assert_non_null(strstr(f->fake->log, "it needs a queue family with graphics"));
+    f->fake->dev.graphics = true;
+    f->fake->dev.depth = false;
+    fake_clear(f->fake);
+    declare_drawing(f->g, (node_params){0});
+    assert_int_equal(frame(f), TYN_ERR_UNSUPPORTED);
+    assert_non_null(strstr(f->fake->log, "it needs depth in format D32_SFLOAT"));
 }
 
 static void first_frame(void **state)
@@ -612,6 +618,23 @@ static void huge_image(void **state)
                         "image 'wide' of 20000 x 1 x 1: the device's limit is 16384 per axis\n");
 }
 
+static void huge_buffer(void **state)
+{
+    fixture *f = *state;
+    f->fake->dev.properties.limits.maxStorageBufferRange = 1 << 20;
+    static const char bytes[3 << 20];
+    tyn_graph_begin(f->g);
+    tyn_graph_upload_buffer(f->g, "many", bytes, sizeof bytes, 1);
+    assert_string_equal(f->fake->log, "'many' takes 3.0 MiB; the device binds at most 1.0 MiB\n");
+    f->fake->dev.properties.limits.maxStorageBufferRange = 8; // of a pass: 12 bytes
+    fake_clear(f->fake);
+    tyn_graph_begin(f->g);
+    tyn_ref refs[COUNT_NUM] = {upload(f->g, "input", 1)};
+    assert_int_equal(tyn_graph_add(f->g, &toy_count, &(node_params){0, 1, 0}, refs),
+                     TYN_ERR_UNSUPPORTED);
+    assert_non_null(strstr(f->fake->log, "pass 'count' needs a buffer '"));
+}
+
 // What a kernel asks for beyond the device's limits is told.
 static void small_device(void **state)
 {
@@ -729,6 +752,7 @@ int main(void)
         TEST(faults),
         TEST(counters),
         TEST(huge_image),
+        TEST(huge_buffer),
         TEST(small_device),
         TEST(no_descriptor_sets),
         TEST(out_of_memory),

@@ -418,7 +418,7 @@ fake_vulkan *fake_create(void)
     tyn_device *dev = &fake->dev;
     dev->log = (tyn_log){on_log, fake, TYN_LOG_INFO};
     dev->debug_names = true;
-    dev->graphics = true;
+    dev->graphics = dev->depth = true;
     dev->properties.limits.maxStorageBufferRange = 128u << 20;
     dev->properties.limits.maxImageDimension2D = 16384;
     dev->properties.limits.maxImageDimension3D = 2048;
