@@ -164,10 +164,35 @@ static void on_a_processor(void **state)
     close_stage(&st);
 }
 
+// Dispatches of a record of balances of `samples`.
+static uint32_t balances(stage *st, uint32_t samples)
+{
+    st->view.width = st->view.height = 1;
+    st->view.outputs = TYN_OUTPUT_BALANCE;
+    fake_clear(st->fake);
+    add(st, samples, NEVER);
+    return st->fake->dispatches;
+}
+
+// A host that does not ask how many samples there may be: no dispatch has more paths than numbers of 32 bits tell apart.
+static void records_of_many_paths(void **state)
+{
+    (void)state;
+    enum {
+        MANY = 1 << 18
+    }; // of 16384 paths each, together 2^32: four dispatches of 2^30 - 2, and the rest
+    stage st;
+    open_stage(&st, card, 1);
+    balances(&st, 1);                      // the medium as well
+    assert_int_equal(balances(&st, 1), 2); // paths, and their sum
+    assert_int_equal(balances(&st, MANY), 2 * 5);
+    close_stage(&st);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(on_a_card),
-                                       cmocka_unit_test(of_a_record_that_is_over),
-                                       cmocka_unit_test(on_a_processor)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(on_a_card), cmocka_unit_test(of_a_record_that_is_over),
+        cmocka_unit_test(on_a_processor), cmocka_unit_test(records_of_many_paths)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
