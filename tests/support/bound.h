@@ -13,10 +13,6 @@
     "of texture units, which may interpolate with weights of 8 bits: this device has more"
 #define BOUND_PROMISE "what is promised for all scenes, of which these are some"
 
-// A texture unit rounds a coordinate to 2^-8 of a texel (subTexelPrecisionBits is 8 on cards): it is off by up to half of
-// that along each axis. So a filtered value is off by up to what the exact one changes by over so much of a texel.
-#define FILTER_SHIFT (1.0 / 512)
-
 // Is `observed` at most `bound`? No NaN is. `why` (a literal, or NULL): the reason if the bound is wide. The name may be that
 // of many checks, as in a loop: of these the one nearest to its bound is held. So a name is of one quantity, whose largest
 // value over points or texels counts; scenes and settings that differ go by names and bounds of their own. With TYN_BOUNDS

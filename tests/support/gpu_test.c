@@ -6,6 +6,8 @@
 #include <tyndall/extend/hash.h>
 #include "shaders/common/counters.h"
 #include "skip.h"
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,12 +61,27 @@ int gpu_setup(void **state)
     return 0;
 }
 
+static bool is_software(const gpu_test *t)
+{
+    return t->dev->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+double gpu_filter_shift(const gpu_test *t)
+{
+    const int bits = (int)t->dev->properties.limits.subTexelPrecisionBits;
+    return is_software(t) ? 0 : ldexp(0.5, -bits);
+}
+
+double gpu_ulps(const gpu_test *t, double allowed)
+{
+    return is_software(t) ? 0 : allowed * (double)FLT_EPSILON;
+}
+
 int gpu_teardown(void **state)
 {
     gpu_test *t = *state;
     // Bounds are near what is observed on a CPU device, whose figures are the same every time.
-    const bool judged = t->dev->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    const bool near = bounds_near(judged && !getenv("TYN_TEST_FILTER"));
+    const bool near = bounds_near(is_software(t) && !getenv("TYN_TEST_FILTER"));
     tyn_graph_destroy(&t->graph);
     t->dev->vk.DestroyFence(t->dev->device, t->fence, NULL);
     t->dev->vk.DestroyCommandPool(t->dev->device, t->pool, NULL);

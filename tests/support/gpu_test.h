@@ -45,5 +45,20 @@ tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size)
 // The port of a pass that is called `name`, of its `refs`; fails the test where there is none.
 tyn_ref *gpu_port(const tyn_pass_desc *pass, tyn_ref *refs, const char *name);
 
+// ---- what arithmetic of the device may be off by: bounds of tests are derived from these --------------
+//
+// A test's own bound holds on a software device, which filters with whole floats and rounds quotients and roots once. What other
+// devices may be off by besides is 0 there.
+
+// By how much of a texel a filtered read may be off along each axis: half a step of subTexelPrecisionBits. So a filtered value
+// is off by up to what the exact one changes by over so much of a texel.
+double gpu_filter_shift(const gpu_test *t);
+// Relative error of a function that Vulkan allows to be off by `allowed` ulps.
+double gpu_ulps(const gpu_test *t, double allowed);
+// Specification, "Precision and Operation of SPIR-V Instructions".
+#define GPU_QUOTIENT 2.5
+#define GPU_ROOT (2 + 2.5) // 1 / inversesqrt
+#define GPU_EXP(x) (3 + 2 * fabs(x))
+
 // Milliseconds the node took in the last run (0 without timestamps).
 double gpu_ms(gpu_test *t, const char *node);
