@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint mixed = 0u;
 struct point {
-    float tau, theta, g; // g and tau_p: mixed only
+    float tau, one_minus_mu, g; // g and tau_p: mixed only
     uint channel;
     float tau_p;
     uint sun;
@@ -26,11 +26,8 @@ void main()
         return;
     }
     point p = points[i];
-    vec3 light = vec3(0.0, 0.0, 1.0), view = vec3(sin(p.theta), 0.0, cos(p.theta));
-    vec3 turn = view - light;
-    float one_minus_mu = 0.5 * dot(turn, turn);
     results[i] =
         mixed == 0u
-            ? scatter_kernels(scatter_angle_of(p.sun, p.channel, one_minus_mu), p.tau)
-            : scatter_kernels_mixed(lut.sun_set[p.sun], p.cosine, one_minus_mu, phase_of_mean_cosine(p.g), p.tau, p.tau_p);
+            ? scatter_kernels(scatter_angle_of(p.sun, p.channel, p.one_minus_mu), p.tau)
+            : scatter_kernels_mixed(lut.sun_set[p.sun], p.cosine, p.one_minus_mu, phase_of_mean_cosine(p.g), p.tau, p.tau_p);
 }
