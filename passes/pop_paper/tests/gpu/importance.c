@@ -177,6 +177,9 @@ static void compare(gpu_test *t, const setup *s, const char *name)
     twin_scene_of(s, &scene);
     twin_importance(&scene, expected, field);
     check_mean(map);
+    // A cell's density is the mean of 27 reads, each off along three axes by a part of the difference of neighbours, which is 1 at
+    // most; three standard deviations.
+    const double off = gpu_filter_shift(t) * sqrt(3) * sqrt(3.0 / 27);
     double worst = 0, top = 0;
     int n = s->params.cells;
     for (int i = 0; i < n * n * n; i++) {
@@ -186,12 +189,13 @@ static void compare(gpu_test *t, const setup *s, const char *name)
         for (int c = 0; c < 2; c++) {
             worst = maximum(worst, fabs(texels[4 * i + c] - field[i][c]) / top);
         }
-        assert_near(texels[4 * i + 2], field[i][2], 1e-4 * (1 + field[i][2]));
+        assert_near(texels[4 * i + 2], field[i][2],
+                    1e-4 * (1 + field[i][2]) + off * (scene.sigma_s + scene.sigma_a));
     }
     double difference = l1(map, expected);
     print_message("%-28s largest difference of the field %.1e of its maximum, of the map L1 %.1e\n",
                   name, worst, difference);
-    assert_true(worst < 1e-4 && difference < 1e-4);
+    assert_true(worst < 1e-4 + off && difference < 1e-4);
 }
 
 static void against_twin(void **state)

@@ -206,7 +206,9 @@ static void maps(void **state)
             }
             // The outer half of a flattened map is seen from its few points only.
             assert_true(fabs(angles / (4 * PI) - 1) < (k == 2 ? 0.05 : 1e-3));
-            assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 : 1e-5));
+            // The narrowest spot's 1 - cos is a few ulps of the cosine, which has a root.
+            const double cosine = gpu_ulps(*state, GPU_ROOT) / (1 - 0.999999);
+            assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 + cosine : 1e-5));
         }
         print_message("%d x %d: solid angles within %.1e\n", n, n, worst);
         // Of texels that the fold cuts.
@@ -379,6 +381,12 @@ static setup blobs(float *density)
     return s;
 }
 
+// A hop has a quotient across and one along, and an exponential of about 1; their errors add up.
+static double hops_off(const gpu_test *t, const setup *s)
+{
+    return s->params.iterations * gpu_ulps(t, 2 * GPU_QUOTIENT + GPU_EXP(1.0));
+}
+
 static void equals_twin(void **state)
 {
     static float density[9 * 12 * 7];
@@ -405,7 +413,7 @@ static void equals_twin(void **state)
                       s.params.scale, s.params.rate, s.params.narrowing, difference, balance);
         // Lobes that point inwards keep 1 - a next to 2, where the parts that go outwards lose digits.
         assert_true(s.params.narrowing ? within(difference, 4e-3, NULL, "narrowing")
-                                       : difference < 4e-5);
+                                       : difference < 4e-5 + hops_off(*state, &s));
         assert_true(balance < 1e-12);
     }
 }
@@ -468,7 +476,7 @@ static void surfaces_stop_light(void **state)
                   difference);
     assert_true(dark > 100 && partly > 10);
     assert_true(off < 1e-5);
-    assert_true(difference < 4e-5);
+    assert_true(difference < 4e-5 + hops_off(*state, &s));
 }
 
 // ---- what holds for any light -------------------------------------------------------------------

@@ -80,6 +80,21 @@ static setup layered_cube(float *density, float sigma_s, float sigma_a)
     return s;
 }
 
+// The same bytes, but where quotients of edges are not 1: a hop has two.
+static void expect_same(const gpu_test *t, const bytes *found, const bytes *right, int iterations)
+{
+    const double off = 2 * iterations * gpu_ulps(t, GPU_QUOTIENT);
+    const float *const a = (const float *)found, *const b = (const float *)right;
+    double most = 0;
+    for (size_t i = 0; i < sizeof *found / sizeof *a && off > 0; i++) {
+        most = maximum(most, fabs((double)b[i]));
+    }
+    for (size_t i = 0; i < sizeof *found / sizeof *a && off > 0; i++) {
+        assert_true(fabs((double)(a[i] - b[i])) <= off * most);
+    }
+    assert_true(off > 0 || !memcmp(found, right, sizeof *found));
+}
+
 // As many cells along as across a cube are cubes.
 static void equal_sides(void **state)
 {
@@ -96,7 +111,7 @@ static void equal_sides(void **state)
             s.params.cells_along = STATE_CELLS;
             o = propagate_run(*state, &s);
             keep(*state, &o, &same);
-            assert_memory_equal(&same, &cubes, sizeof same);
+            expect_same(*state, &same, &cubes, s.params.iterations);
         }
         s.params.cones = 0;
     }
@@ -129,7 +144,8 @@ static void power_is_kept(void **state)
             print_message("%d x %d x %d cells, cones %d: power - 1 = %.1e, a side has %.3f\n",
                           s.params.cells, s.params.cells, s.params.cells_along, cones, power - 1,
                           turned);
-            assert_near(power, 1, 2e-6);
+            // A hop turns light by quotients that are off the same way in all cells.
+            assert_near(power, 1, 2e-6 + s.params.iterations * gpu_ulps(*state, GPU_QUOTIENT));
             assert_true(turned > 1e-4);
         }
     }
