@@ -30,6 +30,12 @@ static void absorption(void **state)
     }
 }
 
+// What is given less where it went: weights of paths have a quotient.
+static double rounding_of_shares(const gpu_test *t)
+{
+    return gpu_ulps(t, GPU_QUOTIENT);
+}
+
 // Without absorption all of it leaves; what has met nothing is Beer's; a cube looks the same from four sides.
 static void scattering(void **state)
 {
@@ -40,7 +46,8 @@ static void scattering(void **state)
         path_scene_check("direct", f->mean.direct[c], f->se.direct[c], (c + 1) * exp(-3));
         path_scene_check("leaves", f->mean.reflected[c] + f->mean.transmitted[c],
                          hypot(f->se.reflected[c], f->se.transmitted[c]), c + 1);
-        path_scene_check("missing", f->mean.missing[c], f->se.missing[c], 0);
+        path_scene_check("missing", f->mean.missing[c],
+                         f->se.missing[c] + (c + 1) * rounding_of_shares(*state), 0);
         double faces = 0;
         for (int i = 0; i < 6; i++) {
             faces += f->mean.leaving[i][c];
@@ -67,7 +74,8 @@ static void surroundings(void **state)
     path_scene_check("incident", f->mean.incident[1], f->se.incident[1], 6 * M_PI * 0.5);
     // Mean of 1 - e^-tau over its chords: all but 1 / (4 V/S 1000), nearly.
     assert_true(f->mean.absorbed_media[1] > 0.99 * 6 * M_PI * 0.5);
-    path_scene_check("missing", f->mean.missing[1], f->se.missing[1], 0);
+    path_scene_check("missing", f->mean.missing[1],
+                     f->se.missing[1] + 6 * M_PI * 0.5 * rounding_of_shares(*state), 0);
 }
 
 int main(void)
