@@ -9,6 +9,7 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/light/shadow_args.h"
 #include "vector.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -381,10 +382,11 @@ static setup blobs(float *density)
     return s;
 }
 
-// A hop has a quotient across and one along, and an exponential of about 1; their errors add up.
+// A hop has a root and two quotients of the lobe, quotients of the cells' sizes and of the light's spread, and two exponentials of
+// about 1. Their errors add up.
 static double hops_off(const gpu_test *t, const setup *s)
 {
-    return s->params.iterations * gpu_ulps(t, 2 * GPU_QUOTIENT + GPU_EXP(1.0));
+    return s->params.iterations * gpu_ulps(t, GPU_ROOT + 4 * GPU_QUOTIENT + 2 * GPU_EXP(1.0));
 }
 
 static void equals_twin(void **state)
@@ -411,9 +413,12 @@ static void equals_twin(void **state)
         }
         print_message("scale %d, rate %d, narrowing %u: largest difference %.1e, balance %.1e\n",
                       s.params.scale, s.params.rate, s.params.narrowing, difference, balance);
-        // Lobes that point inwards keep 1 - a next to 2, where the parts that go outwards lose digits.
-        assert_true(s.params.narrowing ? within(difference, 4e-3, NULL, "narrowing")
-                                       : difference < 4e-5 + hops_off(*state, &s));
+        // Lobes that point inwards keep 1 - a next to 2, where the parts that go outwards lose digits: as many more as the
+        // device's functions are worse than their seven roundings.
+        const double hops = hops_off(*state, &s);
+        const double more = hops / (s.params.iterations * 7 * 0.5 * (double)FLT_EPSILON);
+        assert_true(s.params.narrowing ? within(difference, 4e-3 * (1 + more), NULL, "narrowing")
+                                       : difference < 4e-5 + hops);
         assert_true(balance < 1e-12);
     }
 }
