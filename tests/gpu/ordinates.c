@@ -9,6 +9,7 @@
 #include "numbers.h"
 #include "vector.h"
 #include "random_unit.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -476,12 +477,14 @@ static void against_twin(void **state)
                    map_names[kind], n, split ? ", split" : "", s.importance ? ", importance" : "",
                    worst_light, worst_angle, worst_turn, gpu_ms(t, "ordinates"));
             const char *name = s.importance ? "with importance" : "without importance";
-            assert_true(within(worst_light, most[k][0], BOUND_ROUNDING, "light of %d%s, %s", n,
-                               split ? ", split" : "", name));
-            assert_true(within(worst_angle, most[k][1], BOUND_ROUNDING, "solid angle of %d%s, %s",
+            // All of it is rounding where a quotient ends a region: as much more as quotients are worse.
+            const double more = 1 + gpu_ulps(t, GPU_QUOTIENT) / (0.5 * (double)FLT_EPSILON);
+            assert_true(within(worst_light, most[k][0] * more, BOUND_ROUNDING, "light of %d%s, %s",
                                n, split ? ", split" : "", name));
-            assert_true(within(worst_turn, most[k][2], BOUND_ROUNDING, "direction of %d%s, %s", n,
-                               split ? ", split" : "", name));
+            assert_true(within(worst_angle, most[k][1] * more, BOUND_ROUNDING,
+                               "solid angle of %d%s, %s", n, split ? ", split" : "", name));
+            assert_true(within(worst_turn, most[k][2] * more, BOUND_ROUNDING,
+                               "direction of %d%s, %s", n, split ? ", split" : "", name));
         }
     }
 }
