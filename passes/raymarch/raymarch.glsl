@@ -173,7 +173,7 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u, 0u, 0.0);
+    state.shadow = march_shadows(0u, 0u, 0u, 0u, 0u, 0.0, vec2(0.0));
     return state;
 }
 
@@ -345,6 +345,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     vec3 inverse = ray_inverse(direction);
     float inside = raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS) ? max(end - 5e-4 * (start + end), 0.0) : end;
     march_line line = march_line_of(origin, direction, inside);
+    state.shadow.across = orthographic ? vec2(pixel, 0.0) : pixel * vec2(start, 1.0);
     state.shadow.inside = max(min(inside, end - 0.5 * march_shadow_piece()), 0.0);
     while (state.s < end && spectrum_max(state.through_scaled) > args.stop) {
         float from = state.s;

@@ -79,7 +79,7 @@ vec3 march_near_piece(const march_lamp lamp, const march_lamps ray, const march_
     float all = march_inverse_square(h2, a, b) * march_pixel_mean(length(across) * (0.282 / least));
     float light = share * radial_near(all, h2, a, b, radial_reach(lamp.grid.light, args.reach));
     float middle = clamp(h * tan(clamp(angle, -1.5707, 1.5707)), a, b);
-    if (raymarch_has(RAYMARCH_SHADOWS) && !march_sees(false, lamp.map, min(closest + middle, inside), SHADOW_LIT_BY_ALL)) {
+    if (raymarch_has(RAYMARCH_SHADOWS) && !march_sees(false, lamp.map, min(closest + middle, inside), vec3(0.0), SHADOW_LIT_BY_ALL)) {
         light = 0.0;
     }
     if (light <= 0.0) {

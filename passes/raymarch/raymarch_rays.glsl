@@ -19,6 +19,7 @@ void store_node(const march_target target, const pixel_ray to, const march_resul
         atomicAdd(counters.steps, state.steps);
     }
     float edges = float(min(state.shadow.edges, 255u)) / 1024.0;
+    edges += state.shadow.beside > state.shadow.edges + SPARSE_BESIDE ? SPARSE_THIN : 0.0;
     imageStore(sparse_image, sparse_texel(target.node, SPARSE_RADIANCE), vec4(r.radiance, good ? 1.0 + edges : -1.0));
     imageStore(sparse_image, sparse_texel(target.node, SPARSE_TRANSMITTANCE), vec4(r.transmittance, sparse_nearness(to)));
     imageStore(sparse_image, sparse_texel(target.node, SPARSE_SCALED),

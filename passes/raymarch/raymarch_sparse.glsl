@@ -17,9 +17,14 @@ const float SPARSE_TOLERANCE_FIRST = 0.018, SPARSE_TOLERANCE = 0.04;
 // Relative error of a ray's length x. The light of fog of depth t, 1 - e^-t, changes by x t e^-t with it: 1.1 % at most.
 const float SPARSE_DISTANCE_TOLERANCE = 0.03;
 
+// Looks beside a ray disagree with it about as often as it crosses edges of wide shadows. So many more tell of a shaft or a
+// shadow that is narrower than a cell.
+const uint SPARSE_BESIDE = 2u;
+
 // What is kept of the ray of a node: four texels. Nodes are counted from args.first on, two pixels apart.
 // SPARSE_RADIANCE.a: -1 if one ray cannot stand for the pixel, 2 if its coarse cell is interpolated, else 1 and a 1024th for each
-// edge of a shadow that the ray crosses.
+// edge of a shadow that the ray crosses; SPARSE_THIN more if a shaft or a shadow beside it is narrower than a cell.
+const float SPARSE_THIN = 0.25;
 const int SPARSE_RADIANCE = 0;
 const int SPARSE_TRANSMITTANCE = 1; // transmittance; a = 1 / distance of the surface, or 0
 const int SPARSE_SCALED = 2;         // e^-tau'; a = which shapes are met (rays_of_pixel)
@@ -244,11 +249,16 @@ bool listed_place(int which, uint i, out ivec2 place)
     return is;
 }
 
+bool sparse_thin(float edges) // SPARSE_RADIANCE.a
+{
+    return edges >= 1.0 + SPARSE_THIN && edges < 2.0;
+}
+
 // Do all rays of a coarse cell and of those around it cross as many edges of shadows? A shaft may be seen between nodes otherwise.
 bool sparse_edges_agree(ivec2 node)
 {
     float first = sparse_load(node, SPARSE_RADIANCE).a;
-    bool agree = true;
+    bool agree = !sparse_thin(first);
     for (int i = 0; i < 16 && agree; i++) {
         ivec2 at = node + 2 * (ivec2(i % 4, i / 4) - 1);
         bool there = all(greaterThanEqual(at, ivec2(0))) && in_window(sparse_pixel(at));
@@ -256,6 +266,17 @@ bool sparse_edges_agree(ivec2 node)
         agree = other < 0.0 || other == first;
     }
     return agree;
+}
+
+// Is there a thin shaft or shadow in the coarse cell of a fine one? Nodes two apart may miss it as well.
+bool sparse_thin_within(ivec2 node)
+{
+    bool thin = false;
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = (node & ~1) + 2 * ivec2(i & 1, i >> 1);
+        thin = thin || (in_window(sparse_pixel(at)) && sparse_thin(sparse_load(at, SPARSE_RADIANCE).a));
+    }
+    return thin;
 }
 
 // Of a coarse cell, 4x4 pixels: interpolates or lists the nodes in it that the finer grid has.
@@ -321,6 +342,9 @@ void fill_pixels(ivec2 node)
     // A coarse cell that is smooth has been looked at, but beside it something may begin that spoils a cubic.
     if (!in_window(sparse_pixel(coarse_middle)) || sparse_load(coarse_middle, SPARSE_RADIANCE).a < 1.5) {
         smooth_cell = smooth_cell && !sees_sun(cell);
+        if (raymarch_has(RAYMARCH_SHADOWS)) {
+            smooth_cell = smooth_cell && !sparse_thin_within(node);
+        }
         for (int i = 1; i < 4 && smooth_cell; i++) {
             smooth_cell = is_between(cell, sparse_pixel(node) + ivec2(i & 1, i >> 1), groups[i]);
         }

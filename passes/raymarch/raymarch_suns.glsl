@@ -141,7 +141,9 @@ vec3 march_sunlight(const march_sun sun, const march_medium unit, const march_me
 struct march_shadows {
     uint known, lit;
     uint edges; // of shadows that the ray has crossed
+    uint looks, beside; // looks beside the ray, and those which find other light than on it
     float inside; // where to look at the farthest
+    vec2 across;  // of a pixel: at the eye, and more with each metre from it
 };
 
 float march_shadow_piece()
@@ -149,11 +151,25 @@ float march_shadow_piece()
     return max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
 }
 
-// `by`: SHADOW_LIT_BY_*.
-bool march_sees(bool sun, const march_map m, float s, uint by)
+// Where a node's ray looks beside itself, in the light's frame: all over its cells, up to two pixels and a half away.
+vec3 march_beside(const march_map m, float s, const march_shadows shadow)
 {
-    vec3 q = m.from + s * m.along;
+    vec2 at = 5.0 * (fract(vec2(0.6180340, 0.4142136) * float(shadow.looks)) - 0.5);
+    vec3 moved = (shadow.across.x + s * shadow.across.y) * (at.x * camera.right + at.y * camera.up);
+    return shadow_frame_direction(m.map, moved);
+}
+
+// `by`: SHADOW_LIT_BY_*; `moved` in the light's frame.
+bool march_sees(bool sun, const march_map m, float s, vec3 moved, uint by)
+{
+    vec3 q = m.from + s * m.along + moved;
     return ((sun ? shadow_lit_by(shadow_atlas, shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
+}
+
+// Rays of the first grid do: between these thin shafts may go unseen.
+bool march_looks_beside()
+{
+    return raymarch_has(RAYMARCH_SPARSE_NODES) && args.rays == RAYMARCH_ALL_NODES;
 }
 
 // What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the
@@ -178,7 +194,13 @@ march_lit march_lit_of(bool sun, const march_map map, uint bit, float s, float d
         // Light is found where it is for sure, and goes on from there as far as half of the texels see it: no wall is
         // within the ray.
         uint by = lit || hi > 0.0 ? SHADOW_LIT_BY_HALF : SHADOW_LIT_BY_ALL;
-        bool sees = march_sees(sun, map, min(s + next, shadow.inside), by);
+        float at = min(s + next, shadow.inside);
+        bool sees = march_sees(sun, map, at, vec3(0.0), by);
+        if (march_looks_beside() && hi <= 0.0) {
+            bool beside = march_sees(sun, map, at, march_beside(map, at, shadow), by);
+            shadow.beside += beside != sees ? 1u : 0u;
+            shadow.looks++;
+        }
         lit = known ? lit : sees;
         known = true;
         float more = lit && sees ? next - lo : 0.0;
