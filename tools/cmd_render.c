@@ -170,7 +170,7 @@ static void paths_finish(picture_paths *p)
     free(p->stats);
 }
 
-// --frames N: the timing frames after the picture. `scene` is changed by --change light.
+// --frames N: the timing frames after the picture. `scene` is changed by --change light and sky.
 static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view *view, stats *s)
 {
     const char *change = job->args->change;
@@ -182,6 +182,9 @@ static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view
     } else if (change && strcmp(change, "light") == 0) {
         what = TIMING_LIGHT;
         median = &s->light_moved_ms;
+    } else if (change && strcmp(change, "sky") == 0) {
+        what = TIMING_SKY;
+        median = &s->sky_dimmed_ms;
     } else if (change) {
         what = TIMING_UNCHANGED;
         median = &s->unchanged_ms;
@@ -478,6 +481,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
                .cold_ms = first ? frame_ms : NAN,
                .camera_moved_ms = NAN,
                .light_moved_ms = NAN,
+               .sky_dimmed_ms = NAN,
                .unchanged_ms = NAN,
                .inputs = {paths->scene, paths->environment}};
     if (code == EXIT_DONE && job->repeat > 0) {
@@ -622,7 +626,7 @@ static int run_render(app *a, const void *arguments)
 }
 
 static const char *const curves[] = {"filmic", "linear", NULL};
-static const char *const changes[] = {"none", "camera", "light", NULL};
+static const char *const changes[] = {"none", "camera", "light", "sky", NULL};
 static const opt_positional positionals[] = {SCENE_POSITIONALS(render_args, scene)};
 
 #define AT(field) offsetof(render_args, field)
@@ -662,8 +666,9 @@ static const option output_table[] = {
      .file = OPT_WRITES},
     {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
      "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},
-    {0, "change", OPT_TEXT, AT(change), "none|camera|light",
-     "with --frames N: time frames in which only this changes", .names = changes},
+    {0, "change", OPT_TEXT, AT(change), "none|camera|light|sky",
+     "with --frames N: time frames in which only this changes; sky: gets 1 % darker",
+     .names = changes},
 };
 
 static const opt_group groups[] = {

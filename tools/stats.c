@@ -187,6 +187,7 @@ cJSON *stats_make(const stats *s)
     json_add_float(frame, "cold", s->cold_ms);
     json_add_float(frame, "camera_moved", s->camera_moved_ms);
     json_add_float(frame, "light_moved", s->light_moved_ms);
+    json_add_float(frame, "sky_dimmed", s->sky_dimmed_ms);
     json_add_float(frame, "unchanged", s->unchanged_ms);
     cJSON *pipelines = cJSON_AddObjectToObject(root, "pipelines");
     cJSON_AddNumberToObject(pipelines, "compiled", s->pipelines.compiled);

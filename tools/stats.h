@@ -11,7 +11,8 @@ typedef struct stats {
     const tyn_scene *scene;
     const tyn_view *view;
     double setup_ms;
-    double cold_ms, camera_moved_ms, light_moved_ms, unchanged_ms; // medians; NaN = not run
+    // Medians; NaN = not run.
+    double cold_ms, camera_moved_ms, light_moved_ms, sky_dimmed_ms, unchanged_ms;
     const tyn_report *report;
     tyn_pipeline_stats pipelines; // of the device
     const char *warnings[3]; // beside those of the scene and the report; NULL = none

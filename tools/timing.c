@@ -43,9 +43,12 @@ static void step_lights(tyn_scene *scene)
     memcpy(q, turned, sizeof turned);
 }
 
-static bool has_light(const tyn_scene *scene)
+static bool can_change(const tyn_scene *scene, timing_change change)
 {
-    return scene->num_lights || (scene->environment.present && scene->environment.size[0]);
+    const tyn_environment *e = &scene->environment;
+    return change == TIMING_LIGHT ? scene->num_lights || (e->present && e->size[0])
+           : change == TIMING_SKY ? e->present && e->strength > 0
+                                  : true;
 }
 
 static int by_value(const void *a, const void *b)
@@ -70,13 +73,15 @@ static void step(tyn_scene *scene, tyn_camera *camera, timing_change change)
         timing_turn_camera(scene, camera, step_angle);
     } else if (change == TIMING_LIGHT) {
         step_lights(scene);
+    } else if (change == TIMING_SKY) {
+        scene->environment.strength *= 0.99f;
     }
 }
 
 // The first frame after a change is not timed: drivers compile in it what only such frames need. One sample does.
 static int warm_up(app *a, renderer *r, tyn_scene *scene, tyn_view *view, timing_change change)
 {
-    if (change != TIMING_CAMERA && change != TIMING_LIGHT) {
+    if (change == TIMING_COLD || change == TIMING_UNCHANGED) {
         return EXIT_DONE;
     }
     step(scene, &view->camera, change);
@@ -88,8 +93,8 @@ static int warm_up(app *a, renderer *r, tyn_scene *scene, tyn_view *view, timing
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms)
 {
-    if (change == TIMING_LIGHT && !has_light(scene)) {
-        app_warn(a, "there is no light that could change");
+    if (!can_change(scene, change)) {
+        app_warn(a, "there is no %s that could change", change == TIMING_SKY ? "sky" : "light");
     }
     double *values = calloc(frames, sizeof *values);
     int code = values ? EXIT_DONE : app_exit_code(a, TYN_ERR_MEMORY, false);

@@ -7,11 +7,12 @@ typedef enum timing_change {
     TIMING_UNCHANGED, // nothing changes
     TIMING_CAMERA,    // the camera goes round the middle of the scene
     TIMING_LIGHT,     // the lights turn
+    TIMING_SKY,       // the environment gets darker
 } timing_change;
 
 // Renders `frames` frames and gives the median of their times in ms; before them one that is not timed where
 // something changes. TIMING_LIGHT leaves the scene's
-// lights turned. Gives the exit code.
+// lights turned, TIMING_SKY its environment darker. Gives the exit code.
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms);
 

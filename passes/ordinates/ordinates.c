@@ -33,7 +33,8 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_ordinates_params *p = params;
     const uint32_t room = TYN_ORDINATES_MAX - p->num_fixed;
     const uint32_t fan = p->fan > 1 ? p->fan : 1, regions = (uint32_t)p->count * fan;
-    const struct ordinates_args args = {
+    struct ordinates_args args = {
+        .mapped = tyn_rec_has(r, ORDINATES_PORT_SUMS),
         .regions = regions < room ? regions : room,
         .fan = fan,
         .num_fixed = p->num_fixed,
@@ -41,12 +42,14 @@ static void record(tyn_recorder *r, const void *params)
         .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
         .spread = p->split ? p->spread : ORDINATES_SPREAD_OF_ALL * p->spread,
     };
+    memcpy(args.rows, p->rows, sizeof args.rows);
     struct ordinates_block block = {.count = p->num_fixed + args.regions,
                                     .num_fixed = p->num_fixed};
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
     tyn_rec_update(r, ORDINATES_PORT_ORDINATES, 0, &block, sizeof block);
     if (args.weighted) {
-        TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
+        TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1},
+                     .args = &args);
         TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1});
     }
     static const uint32_t steps[] = {KERNEL_PARTITION, KERNEL_GATHER};

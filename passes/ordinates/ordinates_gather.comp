@@ -1,5 +1,4 @@
-// ordinates_gather.comp -- the ordinate of each region; a thread per region.
-#include "shaders/common/scene_args.h"
+// ordinates_gather.comp -- the ordinate of each region, under a radiance of 1; a thread per region.
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"
@@ -7,10 +6,9 @@
 
 layout(local_size_x = 64) in;
 TYN_ARGS(ordinates_args args);
-TYN_UNIFORM(0, environment, env_block environment);
-TYN_READ(1, sums, sky_sum sums[]);
-TYN_READ(2, regions, vec4 regions[]); // from, to
-TYN_WRITE(3, ordinates, uint count; uint num_fixed; uvec2 pad; ordinate list[]);
+TYN_READ(0, sums, sky_sum sums[]);
+TYN_READ(1, regions, vec4 regions[]); // from, to
+TYN_WRITE(2, ordinates, uint count; uint num_fixed; uvec2 pad; ordinate list[]);
 
 // All of it: xyz power, w luminance; and the moment.
 void add_corner(vec2 p, float sign, inout vec4 power, inout vec3 moment)
@@ -59,7 +57,7 @@ void main()
     const vec3 outwards = ordinates_vector(r);
     vec4 power = vec4(0.0);
     vec3 moment = vec3(0.0);
-    if (uniform_branch(environment.has_map == 0u)) {
+    if (uniform_branch(args.mapped == 0u)) {
         power.rgb = vec3(solid_angle);
         moment = outwards;
     } else {
@@ -71,12 +69,9 @@ void main()
         moment = direction_of_light(power.w / max(mean, 1e-30), moment / max(mean, 1e-30),
                                     solid_angle, outwards);
     }
-    vec3 light = environment.radiance * power.rgb;
-    light -= args.split != 0u ? environment.sky * solid_angle : vec3(0.0);
-    const mat3 to_m =
-        mat3(environment.rows[0].xyz, environment.rows[1].xyz, environment.rows[2].xyz);
+    const mat3 to_m = mat3(args.rows[0].xyz, args.rows[1].xyz, args.rows[2].xyz);
     ordinate o;
-    o.irradiance = light;
+    o.irradiance = power.rgb;
     o.direction = to_m * -middle_of(moment);
     o.solid_angle = solid_angle;
     o.even = solid_angle;

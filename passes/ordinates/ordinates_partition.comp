@@ -5,17 +5,15 @@
 // regions of fan ordinates, each cut on until it has one.
 // The axes of the cuts come from a first tree that ignores importance, so that nothing but the map can
 // change them.
-#include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"
 #include "shaders/light/sky_args.h"
 
 layout(local_size_x = TYN_ORDINATES_MAX) in;
 TYN_ARGS(ordinates_args args);
-TYN_UNIFORM(0, environment, env_block environment);
-TYN_READ(1, sums, sky_sum sums[]);
-TYN_READ(2, weights, float weights[]);
-TYN_WRITE(3, regions, vec4 list[]); // from, to
+TYN_READ(0, sums, sky_sum sums[]);
+TYN_READ(1, weights, float weights[]);
+TYN_WRITE(2, regions, vec4 list[]); // from, to
 
 #include "ordinates_cuts.glsl"
 
@@ -103,7 +101,7 @@ ordinates_density density_of(uint table)
 void main()
 {
     const uint me = gl_LocalInvocationIndex;
-    const bool mapped = environment.has_map != 0u && args.regions > 0u;
+    const bool mapped = args.mapped != 0u && args.regions > 0u;
     grow_tree(density_of(mapped ? ORDINATES_SUMS : ORDINATES_NO_TABLE));
     if (args.weighted != 0u) {
         grow_tree_again(density_of(ORDINATES_WEIGHTS));

@@ -2,12 +2,13 @@
 #include "shaders/common/uniform_branch.glsl"
 #include "shaders/light/environment.glsl"
 #include "shaders/light/sky.glsl"
+#include "ordinates_args.h"
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;
-TYN_UNIFORM(0, environment, env_block environment);
-layout(binding = 1) uniform sampler2D sky;
-layout(binding = 2) uniform sampler2D importance_wrapped;
-TYN_WRITE(3, weights, float weights[]);
+TYN_ARGS(ordinates_args args);
+layout(binding = 0) uniform sampler2D sky;
+layout(binding = 1) uniform sampler2D importance_wrapped;
+TYN_WRITE(2, weights, float weights[]);
 
 const int LEVEL = 2; // of the sky: SKY_SUMS_WIDTH x SKY_SUMS_HEIGHT
 
@@ -21,9 +22,9 @@ void main()
     float polar = (float(y) + 0.5) / float(size.y) * SKY_PI;
     vec3 d = vec3(sin(polar) * sin(azimuth), cos(polar), -sin(polar) * cos(azimuth));
     // The rows are an orthonormal frame: their transpose leads back to M.
-    vec3 d_M = environment.rows[0].xyz * d.x + environment.rows[1].xyz * d.y +
-               environment.rows[2].xyz * d.z;
-    float luminance = uniform_branch(environment.has_map == 0u) ? sky_texel_solid_angle(y, size)
+    vec3 d_M = args.rows[0].xyz * d.x + args.rows[1].xyz * d.y +
+               args.rows[2].xyz * d.z;
+    float luminance = uniform_branch(args.mapped == 0u) ? sky_texel_solid_angle(y, size)
                                                 : texelFetch(sky, ivec2(x, y), LEVEL).a;
     values[x] = luminance * max(textureLod(importance_wrapped, environment_uv(d_M), 0.0).r, 0.0);
     barrier();

@@ -11,7 +11,7 @@ typedef struct sky_seen_args tyn_sky_seen_params;
 // clang-format off
 #define SKY_SEEN_PORTS(X) \
     X(SKY_SEEN, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
-    X(SKY_SEEN, DIRECTIONS, directions, IN, BUFFER, "struct ordinates_block: parts of the ordinates"), \
+    X(SKY_SEEN, DIRECTIONS, directions, IN, BUFFER, "struct ordinates_block: parts of the ordinates; their light weighs them within an ordinate"), \
     TYN_SKY_MAPS(X, SKY_SEEN), \
     TYN_WALLS(X##_OPTIONAL, SKY_SEEN), \
     X(SKY_SEEN, SKY_SEEN, sky_seen, OUT, BUFFER, "sky_seen.glsl: shares of the ordinates that cells see")

@@ -22,7 +22,7 @@ typedef struct tyn_sky_shadows_params {
     X(SKY_SHADOWS, SURFACES, surfaces, IN, BUFFER, "struct surface_block"), \
     X(SKY_SHADOWS, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
     X(SKY_SHADOWS, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \
-    X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions"), \
+    X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions; of their light nothing is read"), \
     X(SKY_SHADOWS, SKY_ATLAS, sky_atlas, OUT, IMAGE_2D, \
         "reversed depth of what each map sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
     X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces")

@@ -8,6 +8,7 @@
 #include "shaders/common/shared.h"
 
 #define TYN_ORDINATES_MAX 256
+#define TYN_ORDINATES_MAX_FIXED 68 // suns: ready-made ordinates that come first
 
 struct ordinate {
     // W/m^2 across the direction: integral of the radiance over the region. Where the mean of the

@@ -55,7 +55,7 @@ refuses 2 "--until 1% goes with none of" render a.gltf --until 1% --resume -o a.
 refuses 2 "--spp needs a value" render a.gltf --spp
 refuses 2 "--quiet takes no value" render a.gltf --quiet=1
 refuses 2 "--quality: 'best' is not one of: draft, normal, high" render a.gltf --quality best
-refuses 2 "--change: 'all' is not one of: none, camera, light" render a.gltf --change all
+refuses 2 "--change: 'all' is not one of: none, camera, light, sky" render a.gltf --change all
 refuses 2 "--exposure: 'bright' is neither a number from -64 to 64 nor 'auto'" render a.gltf --exposure bright
 refuses 2 "--exposure: '65' is neither" render a.gltf --exposure 65
 refuses 2 "--tonemap: 'reinhard' is not one of: filmic, linear" render a.gltf --tonemap reinhard

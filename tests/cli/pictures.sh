@@ -51,6 +51,10 @@ works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 3 --change none -
 near "$(get n.json frame_ms.unchanged)" 0 1e5 "stats: unchanged"
 works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 2 --change camera --stats c.json
 near "$(get c.json frame_ms.camera_moved)" 0 1e5 "stats: camera_moved"
+works render "$scenes/plume-contrast.gltf" --size 64x48 --quiet --frames 2 --change sky --stats d.json
+near "$(get d.json frame_ms.sky_dimmed)" 0 1e5 "stats: sky_dimmed"
+[ "$(get d.json nodes.2.name) $(get d.json nodes.2.state)" = "ordinates unchanged" ] && [ "$(get d.json nodes.3.name) $(get d.json nodes.3.state)" = "sky_light ran" ] ||
+    fail "stats: a sky that is dimmed"
 works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 2 --stats f.json
 near "$(get f.json frame_ms.cold)" 0 1e5 "stats: cold"
 

@@ -4,6 +4,7 @@
 #include "gpu_test.h"
 #include "passes/env_importance/env_importance.h"
 #include "passes/ordinates/ordinates.h"
+#include "passes/sky_light/sky_light.h"
 #include "scene/env_suns.h"
 #include "shaders/common/scene_args.h"
 #include "numbers.h"
@@ -119,7 +120,6 @@ static struct ordinates_block run(gpu_test *t, const scene *s, const tyn_ordinat
     static float rgba[W * H * 4];
     tyn_graph_begin(t->graph);
     tyn_ref env[ENV_IMPORTANCE_NUM_PORTS] = {{0}}, refs[ORDINATES_NUM_PORTS] = {{0}};
-    refs[ORDINATES_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env);
     if (!s->constant) {
         for (int i = 0; i < W * H; i++) {
             memcpy(rgba + 4 * i, map + 3 * i, 12);
@@ -135,11 +135,22 @@ static struct ordinates_block run(gpu_test *t, const scene *s, const tyn_ordinat
         refs[ORDINATES_PORT_IMPORTANCE] = gpu_image(
             t, "importance", TYN_IMAGE_2D, (tyn_extent){IMP_W, IMP_H, 1}, 1, s->importance);
     }
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_ordinates, params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "ordinates", refs[ORDINATES_PORT_ORDINATES], true);
+    tyn_ordinates_params dark = *params;
+    memcpy(dark.rows, s->env.rows, sizeof dark.rows);
+    tyn_sky_light_params light = {.split = params->split, .num_fixed = params->num_fixed};
+    memcpy(light.fixed, params->fixed, sizeof light.fixed);
+    for (uint32_t i = 0; i < dark.num_fixed; i++) {
+        memset(dark.fixed[i].irradiance, 0, sizeof dark.fixed[i].irradiance);
+    }
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_ordinates, &dark, refs), TYN_OK);
+    tyn_ref lit[SKY_LIGHT_NUM_PORTS] = {
+        [SKY_LIGHT_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env),
+        [SKY_LIGHT_PORT_ORDINATES] = refs[ORDINATES_PORT_ORDINATES]};
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_sky_light, &light, lit), TYN_OK);
+    tyn_graph_output(t->graph, "lit", lit[SKY_LIGHT_PORT_LIT], true);
     gpu_run(t);
     struct ordinates_block block;
-    memcpy(&block, gpu_map(t, "ordinates"), sizeof block);
+    memcpy(&block, gpu_map(t, "lit"), sizeof block);
     return block;
 }
 
@@ -518,10 +529,10 @@ static void fixed(void **state)
     gpu_test *t = *state;
     const scene s = make_scene(SKY, 0.3);
     tyn_ordinates_params params = defaults(256, true);
-    for (int i = 0; i < ORDINATES_MAX_FIXED; i++) {
+    for (int i = 0; i < TYN_ORDINATES_MAX_FIXED; i++) {
         params.fixed[i] = (struct ordinate){{(float)i, 1e-9f, 0}, 1, {0, 1, 0}, 0, 0, {0, 0, 0}};
     }
-    for (uint32_t n = 0; n <= ORDINATES_MAX_FIXED; n += 34) {
+    for (uint32_t n = 0; n <= TYN_ORDINATES_MAX_FIXED; n += 34) {
         params.num_fixed = n;
         const struct ordinates_block b = run(t, &s, &params);
         assert_int_equal(b.num_fixed, n);
@@ -541,7 +552,7 @@ static void fixed(void **state)
     scene dark = s;
     dark.constant = true; // connects nothing
     const struct ordinates_block b = run(t, &dark, &params);
-    assert_int_equal(b.count, ORDINATES_MAX_FIXED);
+    assert_int_equal(b.count, TYN_ORDINATES_MAX_FIXED);
     assert_memory_equal(b.list, params.fixed, sizeof params.fixed);
     assert_true(b.list[b.count].solid_angle == 0);
 }

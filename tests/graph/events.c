@@ -497,6 +497,9 @@ static void strengths_are_values(void **state)
         assert_int_equal(c.record, 'y');
         assert_null(strstr(c.ran, "medium"));
         assert_null(strstr(c.ran, "shadow_map"));
+        assert_null(strstr(c.ran, "sky_shadows"));
+        assert_null(strstr(c.ran, "sky_seen"));
+        assert_null(strstr(c.ran, "columns"));
         assert_null(strstr(c.ran, "walls"));
         assert_null(strstr(c.ran, "lattice_cells"));
         assert_true(strncmp(c.ran, "beam", 4) != 0);

@@ -112,10 +112,11 @@ static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_medium_refs medium = s->medium;
     float texel[3];
     tyn_average_medium(g, job, params.dims, &medium, texel);
-    tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = s->sky.ordinates};
+    tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = s->sky.unlit_ordinates};
     tyn_connect(refs, COLUMNS_PORT_MEDIUM, medium);
     tyn_graph_add(g, &tyn_pass_columns, &params, refs);
     tyn_take(refs, COLUMNS_PORT_ORDINATES, s->sky.columns);
+    s->sky.columns.ordinates = s->sky.ordinates;
 }
 
 // What surfaces leave of the ordinates.
@@ -126,8 +127,8 @@ static void add_seen(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     params.count = s->sky.count;
     params.fan = s->sky.fan;
-    tyn_ref refs[TYN_MAX_PORTS] = {[SKY_SEEN_PORT_ORDINATES] = s->sky.ordinates,
-                                   [SKY_SEEN_PORT_DIRECTIONS] = s->sky.directions};
+    tyn_ref refs[TYN_MAX_PORTS] = {[SKY_SEEN_PORT_ORDINATES] = s->sky.unlit_ordinates,
+                                   [SKY_SEEN_PORT_DIRECTIONS] = s->sky.unlit_directions};
     tyn_connect(refs, SKY_SEEN_PORT_SKY_ATLAS, s->sky.maps);
     tyn_connect(refs, SKY_SEEN_PORT_WALL_LINKS, s->walls.cut);
     tyn_graph_add(g, &tyn_pass_sky_seen, &params, refs);

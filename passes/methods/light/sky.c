@@ -41,6 +41,28 @@ static struct ordinate ordinate_of_sun(const struct light_block *sun)
     return o;
 }
 
+// Ordinates, `unlit`, and with the light of the environment and of the suns among `params`.
+static tyn_ref add_ordinates(tyn_graph *g, const tyn_job *job, const tyn_ordinates_params *params,
+                             tyn_ref refs[TYN_MAX_PORTS], tyn_ref *unlit)
+{
+    tyn_ordinates_params dark = *params;
+    memcpy(dark.rows, job->frame->environment.rows, sizeof dark.rows);
+    tyn_sky_light_params light;
+    tyn_settings_params(job->settings, &tyn_pass_sky_light, &light);
+    light.split = params->split;
+    light.num_fixed = params->num_fixed;
+    memcpy(light.fixed, params->fixed, sizeof light.fixed);
+    for (uint32_t i = 0; i < dark.num_fixed; i++) {
+        memset(dark.fixed[i].irradiance, 0, sizeof dark.fixed[i].irradiance);
+    }
+    tyn_graph_add(g, &tyn_pass_ordinates, &dark, refs);
+    *unlit = refs[ORDINATES_PORT_ORDINATES];
+    tyn_ref lit[TYN_MAX_PORTS] = {
+        [SKY_LIGHT_PORT_ENVIRONMENT] = job->refs.environment, [SKY_LIGHT_PORT_ORDINATES] = *unlit};
+    tyn_graph_add(g, &tyn_pass_sky_light, &light, lit);
+    return lit[SKY_LIGHT_PORT_LIT];
+}
+
 // What surfaces hide of `count` directions.
 static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *sky)
 {
@@ -55,7 +77,7 @@ static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *
         [SKY_SHADOWS_PORT_SURFACES] = job->refs.geometry.surfaces,
         [SKY_SHADOWS_PORT_TRIANGLES] = job->refs.geometry.triangles,
         [SKY_SHADOWS_PORT_VERTICES] = job->refs.geometry.vertices,
-        [SKY_SHADOWS_PORT_ORDINATES] = sky->directions,
+        [SKY_SHADOWS_PORT_ORDINATES] = sky->unlit_directions,
     };
     tyn_graph_add(g, &tyn_pass_sky_shadows, &params, refs);
     tyn_take(refs, SKY_SHADOWS_PORT_SKY_ATLAS, sky->maps);
@@ -75,9 +97,8 @@ static void add_directions(tyn_graph *g, const tyn_job *job, tyn_ordinates_param
     params.spread *= params.split ? 1.0f / ORDINATES_SPREAD_OF_ALL : 1.0f;
     params.split = 0;
     refs[ORDINATES_PORT_ORDINATES] = (tyn_ref){0};
-    tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     sky->fan = params.fan;
-    sky->directions = refs[ORDINATES_PORT_ORDINATES];
+    sky->directions = add_ordinates(g, job, &params, refs, &sky->unlit_directions);
     const uint32_t all = fixed + count * params.fan;
     if (job->frame->num_triangles) {
         add_maps(g, job, all < TYN_ORDINATES_MAX ? all : TYN_ORDINATES_MAX, sky);
@@ -106,7 +127,7 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     uint32_t count = (uint32_t)params.count + params.num_fixed;
     sky->count = count < TYN_ORDINATES_MAX ? count : TYN_ORDINATES_MAX;
 
-    tyn_ref refs[TYN_MAX_PORTS] = {[ORDINATES_PORT_ENVIRONMENT] = job->refs.environment};
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     if (regions && env->has_map) {
         add_env_importance(g, job, false, &sky->map, &refs[ORDINATES_PORT_SUMS]);
         refs[ORDINATES_PORT_SKY] = sky->map;
@@ -114,8 +135,7 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
     if (regions) {
         refs[ORDINATES_PORT_IMPORTANCE] = sky->importance;
     }
-    tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
-    sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
+    sky->ordinates = add_ordinates(g, job, &params, refs, &sky->unlit_ordinates);
     if (directions) {
         add_directions(g, job, params, refs, sky);
     }

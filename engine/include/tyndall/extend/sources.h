@@ -25,7 +25,9 @@ typedef struct tyn_lamps {
 typedef struct tyn_sky {
     tyn_ref map;       // the environment's without its suns; {0} if the environment is constant
     tyn_ref ordinates; // struct ordinates_block; {0} if nothing shines from ordinates
-    uint32_t count;    // ordinates at most
+    // The same for a radiance of 1, suns without light: stays when the sky is dimmed. For what reads directions alone.
+    tyn_ref unlit_ordinates, unlit_directions;
+    uint32_t count; // ordinates at most
     bool split; // they carry the map less its mean, env_block.sky, which comes in from all sides
     // Set before the ordinates are added: how much each direction matters to the picture, latitude and longitude of M, mean 1;
     // {0}: all alike.
@@ -157,7 +159,7 @@ TYN_API void tyn_add_rsm_views(tyn_graph *g, const tyn_job *job, const tyn_rsm_v
 #define TYN_SUN_PASSES(X) X(beam), X(shadow_map)
 #define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
-#define TYN_SKY_PASSES(X) X(env_importance), X(ordinates), X(sky_shadows)
+#define TYN_SKY_PASSES(X) X(env_importance), X(ordinates), X(sky_light), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
     X(lattice_cells), X(walls), X(wall_light), X(rooms), X(columns_average), X(columns),           \
         X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
