@@ -82,6 +82,8 @@
     X(CmdSetViewport)                                                                              \
     X(CmdSetScissor)                                                                               \
     X(CmdDraw)                                                                                     \
+    X(CmdBindIndexBuffer)                                                                          \
+    X(CmdDrawIndexed)                                                                              \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \
     X(CmdCopyImageToBuffer)                                                                        \

@@ -85,9 +85,10 @@ static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent siz
                                    .pDepthAttachment = has_depth ? &depth : NULL});
 }
 
-static void draw_tile(tyn_recorder *r, const tyn_kernel *k, const tyn_pipeline *pl,
-                      const tyn_tile *tile, uint32_t all)
+static void draw_tile(tyn_recorder *r, const tyn_draw *d, const tyn_pipeline *pl,
+                      const tyn_tile *tile)
 {
+    const tyn_kernel *k = &r->g->nodes[r->node].pass->kernels[d->kernel];
     const tyn_procs *vk = &r->g->dev->vk;
     vk->CmdSetViewport(r->cmd, 0, 1,
                        &(VkViewport){(float)tile->x, (float)tile->y, (float)tile->width,
@@ -99,7 +100,12 @@ static void draw_tile(tyn_recorder *r, const tyn_kernel *k, const tyn_pipeline *
         vk->CmdPushConstants(r->cmd, pl->layout, tyn_kernel_stages(k), 0, k->args_size, tile->args);
     }
     const bool part = tile->first + tile->vertices > 0;
-    vk->CmdDraw(r->cmd, part ? tile->vertices : all, 1, tile->first, 0);
+    const uint32_t vertices = part ? tile->vertices : d->vertices;
+    if (d->indexed) {
+        vk->CmdDrawIndexed(r->cmd, vertices, 1, tile->first, 0, 0);
+    } else {
+        vk->CmdDraw(r->cmd, vertices, 1, tile->first, 0);
+    }
 }
 
 void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
@@ -125,6 +131,15 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
                                                : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         }
     }
+    if (d->indexed && n->res[d->indices]) {
+        const uint32_t index = n->res[d->indices] - 1;
+        launch_touch(&l, index,
+                     (tyn_access){VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT,
+                                  true, false, VK_IMAGE_LAYOUT_UNDEFINED});
+        if (r->mode == RECORD_SURVEY && r->usage) {
+            r->usage[index].buffer_usage |= VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+        }
+    }
     if (!launch_prepare(r, &l)) {
         return;
     }
@@ -139,9 +154,13 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
     if (!pl) {
         return;
     }
+    if (d->indexed) {
+        r->g->dev->vk.CmdBindIndexBuffer(r->cmd, r->g->phys[n->res[d->indices] - 1].buffer, 0,
+                                         VK_INDEX_TYPE_UINT32);
+    }
     begin_rendering(r, k, size, d);
     for (uint32_t i = 0; i < num_tiles && d->vertices; i++) {
-        draw_tile(r, k, pl, &tiles[i], d->vertices);
+        draw_tile(r, d, pl, &tiles[i]);
     }
     r->g->dev->vk.CmdEndRendering(r->cmd);
 }

@@ -334,6 +334,20 @@ static void draw(VkCommandBuffer cmd, uint32_t vertices, uint32_t instances, uin
     put("draw %s %u\n", name_of(bound_pipeline), vertices);
 }
 
+static void bind_indices(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset,
+                         VkIndexType type)
+{
+    (void)cmd, (void)offset, (void)type;
+    put("indices %s ", name_of((uint64_t)buffer));
+}
+
+static void draw_indexed(VkCommandBuffer cmd, uint32_t indices, uint32_t instances, uint32_t first,
+                         int32_t shift, uint32_t first_instance)
+{
+    (void)shift;
+    draw(cmd, indices, instances, first, first_instance);
+}
+
 static void dispatch_indirect(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset)
 {
     (void)cmd;
@@ -488,6 +502,8 @@ fake_vulkan *fake_create(void)
         .CmdSetViewport = set_viewport,
         .CmdSetScissor = set_scissor,
         .CmdDraw = draw,
+        .CmdBindIndexBuffer = bind_indices,
+        .CmdDrawIndexed = draw_indexed,
         .CmdCopyBuffer = copy_buffer,
         .CmdCopyBufferToImage = copy_to_image,
         .CmdCopyImageToBuffer = copy_from_image,

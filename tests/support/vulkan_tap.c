@@ -324,6 +324,11 @@ TAP_VOID(CmdSetScissor, (VkCommandBuffer c, uint32_t f, uint32_t n, const VkRect
          (c, f, n, v), COMMANDS)
 TAP_VOID(CmdDraw, (VkCommandBuffer c, uint32_t v, uint32_t i, uint32_t f, uint32_t g),
          (c, v, i, f, g), COMMANDS)
+TAP_VOID(CmdBindIndexBuffer, (VkCommandBuffer c, VkBuffer b, VkDeviceSize o, VkIndexType t),
+         (c, b, o, t), COMMANDS)
+TAP_VOID(CmdDrawIndexed,
+         (VkCommandBuffer c, uint32_t n, uint32_t i, uint32_t f, int32_t v, uint32_t g),
+         (c, n, i, f, v, g), COMMANDS)
 TAP_VOID(CmdCopyBuffer,
          (VkCommandBuffer c, VkBuffer s, VkBuffer t, uint32_t n, const VkBufferCopy *r),
          (c, s, t, n, r), COMMANDS)

@@ -325,6 +325,8 @@ typedef struct tyn_draw {
     const void *args;
     bool keep;            // draw over what is there; else all of the attachments is cleared first
     bool keep_depth;      // ... but for the depth, which an earlier draw has laid down
+    bool indexed;         // vertices are elements of the port `indices`, a buffer of uint32_t:
+    uint8_t indices;      // corners that triangles share are computed once
     const uint8_t *ports; // NULL = the table's; else num_bindings port indices
     const uint32_t *spec; // num_spec values, NULL = zeros
     const char *label;
