@@ -1,5 +1,6 @@
 // sky_shadows.c -- the scene's triangles drawn into a map of every direction.
 #include "sky_shadows.h"
+#include "sky_shadows_corners.comp.h"
 #include "sky_shadows_frames.comp.h"
 #include "sky_shadows_vertex.vert.h"
 #include <stddef.h>
@@ -16,9 +17,10 @@ static const tyn_raster raster = {
     .clear_depth = 0.0f,
 };
 
-enum { KERNEL_FRAMES, KERNEL_DRAW, NUM_KERNELS };
+enum { KERNEL_CORNERS, KERNEL_FRAMES, KERNEL_DRAW, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_CORNERS] = TYN_KERNEL(sky_shadows_corners),
     [KERNEL_FRAMES] = TYN_KERNEL(sky_shadows_frames),
     [KERNEL_DRAW] = TYN_DRAW("sky_shadows", sky_shadows_vertex, sky_shadows_vertex, &raster),
 };
@@ -61,6 +63,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     tyn_build_image(b, SKY_SHADOWS_PORT_SKY_ATLAS,
                     (tyn_extent){side * texels, (maps + side - 1) / side * texels, 1}, 1);
+    tyn_build_buffer(b, SKY_SHADOWS_PORT_CORNERS, 3 * sizeof(uint32_t) * p->num_triangles);
     tyn_build_buffer(b, SKY_SHADOWS_PORT_SKY_MAPS, maps * sizeof(struct shadow_light));
     return TYN_OK;
 }
@@ -73,11 +76,14 @@ static void record(tyn_recorder *r, const void *params)
         .across = side, .texels = (float)texels, .reach = p->reach, .count = p->count};
     memcpy(args.near_lo, p->near_lo, sizeof args.near_lo);
     memcpy(args.near_hi, p->near_hi, sizeof args.near_hi);
+    const struct sky_corners_args triangles = {p->num_triangles};
+    TYN_DISPATCH(r, .kernel = KERNEL_CORNERS, .cells = {p->num_triangles, 1, 1},
+                 .args = &triangles);
     TYN_DISPATCH(r, .kernel = KERNEL_FRAMES, .cells = {maps, 1, 1}, .args = &args);
     tyn_tile tiles[MAX_MAPS];
     struct sky_draw_args draws[MAX_MAPS];
     for (uint32_t i = 0; i < maps; i++) {
-        draws[i] = (struct sky_draw_args){.map = i, .direction = i % p->count};
+        draws[i] = (struct sky_draw_args){.map = i};
         tiles[i] = (tyn_tile){.x = i % side * texels,
                               .y = i / side * texels,
                               .width = texels,
@@ -87,7 +93,9 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW,
                                 .vertices = 3 * p->num_triangles,
                                 .tiles = tiles,
-                                .num_tiles = maps});
+                                .num_tiles = maps,
+                                .indexed = true,
+                                .indices = SKY_SHADOWS_PORT_CORNERS});
     tyn_rec_work(r, "triangles", (double)p->num_triangles * maps);
 }
 

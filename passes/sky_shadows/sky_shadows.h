@@ -25,6 +25,7 @@ typedef struct tyn_sky_shadows_params {
     X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions; of their light nothing is read"), \
     X(SKY_SHADOWS, SKY_ATLAS, sky_atlas, OUT, IMAGE_2D, \
         "reversed depth of what each map sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
-    X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces")
+    X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces"), \
+    X(SKY_SHADOWS, CORNERS, corners, SCRATCH, BUFFER, "uint[]: vertices of each triangle")
 // clang-format on
 TYN_PASS(SKY_SHADOWS, sky_shadows);

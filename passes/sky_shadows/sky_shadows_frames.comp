@@ -105,5 +105,10 @@ void main()
     map.kind = TYN_SHADOW_SUN;
     map.wider = !wide && args.count < uint(maps.length()) ? args.count + i : 0u;
     map.pad = 0u;
+    if ((wide ? i - args.count : i) >= ordinates.count) {
+        for (int r = 0; r < 3; r++) {
+            map.rows[r] = vec4(0.0, 0.0, 0.0, 2.0); // nowhere: nothing is drawn
+        }
+    }
     maps[i] = map;
 }

@@ -24,9 +24,14 @@ struct sky_frames_args {
 };
 TYN_ASSERT_SIZE(sky_frames_args, 40);
 
-struct sky_draw_args {
-    tyn_uint map, direction;
+struct sky_corners_args {
+    tyn_uint num_triangles;
 };
-TYN_ASSERT_SIZE(sky_draw_args, 8);
+TYN_ASSERT_SIZE(sky_corners_args, 4);
+
+struct sky_draw_args {
+    tyn_uint map;
+};
+TYN_ASSERT_SIZE(sky_draw_args, 4);
 
 #endif
