@@ -131,7 +131,12 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
                                                : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         }
     }
-    if (d->indexed && n->res[d->indices]) {
+    if (d->indexed && !n->res[d->indices]) {
+        recorder_fail(r, TYN_ERR_PARAMS, "a draw's indices must exist; not so",
+                      n->pass->ports[d->indices].name);
+        return;
+    }
+    if (d->indexed) {
         const uint32_t index = n->res[d->indices] - 1;
         launch_touch(&l, index,
                      (tyn_access){VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT,

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CORNERS, ADDITION, COLOR, FACING, DEPTH };
+enum { CORNERS, ADDITION, COLOR, FACING, DEPTH, INDICES };
 enum { SIZE = 16 };
 
 static const tyn_port ports[] = {
@@ -16,6 +16,7 @@ static const tyn_port ports[] = {
     {"color", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false, "picture"},
     {"facing", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT, false, "front or back, depth"},
     {"depth", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false, "1 near, 0 far"},
+    {"indices", TYN_IN, TYN_BUFFER, 0, true, "corners of an indexed draw"},
 };
 static const tyn_binding bindings[] = {{CORNERS, TYN_USE_STORAGE_READ},
                                        {ADDITION, TYN_USE_SAMPLED}};
@@ -71,7 +72,7 @@ typedef struct args {
 } args;
 
 typedef struct draw_params {
-    uint32_t kernel, vertices, tiles, again, flat;
+    uint32_t kernel, vertices, tiles, again, flat, indexed;
 } draw_params;
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -97,6 +98,8 @@ static void record(tyn_recorder *r, const void *params)
                                 .tiles = p->tiles ? tiles : NULL,
                                 .num_tiles = p->tiles,
                                 .args = &plain,
+                                .indexed = p->indexed,
+                                .indices = INDICES,
                                 .spec = (const uint32_t[]){p->flat}});
     if (p->again) {
         tyn_rec_draw(r, &(tyn_draw){.kernel = p->kernel,
@@ -110,7 +113,7 @@ static void record(tyn_recorder *r, const void *params)
 static const tyn_pass_desc triangles = {.name = "triangles",
                                         .summary = "draws triangles",
                                         .ports = ports,
-                                        .num_ports = 5,
+                                        .num_ports = 6,
                                         .kernels = kernels,
                                         .num_kernels = 3,
                                         .params_size = sizeof(draw_params),
@@ -174,6 +177,8 @@ static void corners(corner out[12], float depth)
     memcpy(out, c, sizeof c);
 }
 
+static const uint32_t upper_half[6] = {6, 7, 8, 6, 8, 11}; // the triangles over the upper half
+
 typedef struct pictures {
     const float (*color)[4], (*facing)[2];
     const float *depth, *copied;
@@ -184,7 +189,10 @@ static pictures draw(gpu_test *t, draw_params params, float depth, const float *
     corner c[12];
     corners(c, depth);
     tyn_graph_begin(t->graph);
-    tyn_ref refs[5] = {gpu_buffer(t, "corners", c, sizeof c)};
+    tyn_ref refs[6] = {gpu_buffer(t, "corners", c, sizeof c)};
+    if (params.indexed) {
+        refs[INDICES] = gpu_buffer(t, "indices", upper_half, sizeof upper_half);
+    }
     if (addition) {
         refs[ADDITION] = gpu_image(t, "addition", TYN_IMAGE_2D, (tyn_extent){1, 1, 1}, 4, addition);
     }
@@ -276,6 +284,17 @@ static void tiles_have_their_own_constants(void **state)
     assert_int_equal(stats[0].state, TYN_NODE_RAN);
 }
 
+static void indices_choose_the_corners(void **state)
+{
+    pictures p = draw(*state, (draw_params){.vertices = 6, .indexed = 1}, 0.75f, NULL);
+    for (uint32_t y = 0; y < SIZE; y++) {
+        for (uint32_t x = 0; x < SIZE; x++) {
+            const bool drawn = y < SIZE / 2;
+            expect(&p, x, y, 0, drawn, drawn ? -1 : 0, drawn ? 0.75f : 0);
+        }
+    }
+}
+
 static void second_draw_keeps_the_first(void **state)
 {
     gpu_test *t = *state;
@@ -315,7 +334,7 @@ static void queues_without_graphics_are_refused(void **state)
     corner c[12];
     corners(c, 0);
     tyn_graph_begin(t->graph);
-    tyn_ref refs[5] = {gpu_buffer(t, "corners", c, sizeof c)};
+    tyn_ref refs[6] = {gpu_buffer(t, "corners", c, sizeof c)};
     assert_int_equal(tyn_graph_add(t->graph, &triangles, &(draw_params){.vertices = 3}, refs),
                      TYN_OK);
     tyn_graph_output(t->graph, "color", refs[COLOR], true);
@@ -336,7 +355,7 @@ static void targets_beyond_the_limits_are_refused(void **state)
     corner c[12];
     corners(c, 0);
     tyn_graph_begin(t->graph);
-    tyn_ref refs[5] = {gpu_buffer(t, "corners", c, sizeof c)};
+    tyn_ref refs[6] = {gpu_buffer(t, "corners", c, sizeof c)};
     assert_int_equal(tyn_graph_add(t->graph, &triangles, &(draw_params){.vertices = 3}, refs),
                      TYN_OK);
     tyn_graph_output(t->graph, "color", refs[COLOR], true);
@@ -354,6 +373,7 @@ int main(void)
         cmocka_unit_test(nearest_triangle_wins),
         cmocka_unit_test(back_faces_are_culled),
         cmocka_unit_test(tiles_have_their_own_constants),
+        cmocka_unit_test(indices_choose_the_corners),
         cmocka_unit_test(second_draw_keeps_the_first),
         cmocka_unit_test(depth_alone_is_drawn),
         cmocka_unit_test(queues_without_graphics_are_refused),
