@@ -6,6 +6,8 @@
 
 static const double step_angle = 0.5 * 3.14159265358979323846 / 180; // each frame, about +Y
 
+static const float step_share = 0.01f; // of the strength of what gets darker
+
 static void turn(float v[3], double radians)
 {
     const double c = cos(radians), s = sin(radians), x = v[0], z = v[2];
@@ -29,11 +31,16 @@ void timing_turn_camera(const tyn_scene *scene, tyn_camera *camera, double radia
     }
 }
 
-// The environment turns as well: its rotation q becomes that about +Y times q.
+// The environment turns as well: its rotation q becomes that about +Y times q. Point lights look the same from all sides: they
+// get darker.
 static void step_lights(tyn_scene *scene)
 {
     for (uint32_t i = 0; i < scene->num_lights; i++) {
-        turn(scene->lights[i].direction, step_angle);
+        tyn_light *light = &scene->lights[i];
+        turn(light->direction, step_angle);
+        for (int c = 0; c < 3 && light->kind == TYN_LIGHT_POINT; c++) {
+            light->color[c] *= 1 - step_share;
+        }
     }
     float *q = scene->environment.rotation;
     const float w = q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? 1 : q[3];
@@ -74,7 +81,7 @@ static void step(tyn_scene *scene, tyn_camera *camera, timing_change change)
     } else if (change == TIMING_LIGHT) {
         step_lights(scene);
     } else if (change == TIMING_SKY) {
-        scene->environment.strength *= 0.99f;
+        scene->environment.strength *= 1 - step_share;
     }
 }
 

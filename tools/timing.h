@@ -6,7 +6,7 @@ typedef enum timing_change {
     TIMING_COLD = 0,  // every node runs in every frame
     TIMING_UNCHANGED, // nothing changes
     TIMING_CAMERA,    // the camera goes round the middle of the scene
-    TIMING_LIGHT,     // the lights turn
+    TIMING_LIGHT,     // the lights turn, point lights get darker
     TIMING_SKY,       // the environment gets darker
 } timing_change;
 

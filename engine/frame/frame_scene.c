@@ -416,8 +416,10 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
     b->size[0] = env->size[0];
     b->size[1] = env->size[1];
     const float *q = env->rotation;
-    double n =
-        sqrt((double)q[0] * q[0] + (double)q[1] * q[1] + (double)q[2] * q[2] + (double)q[3] * q[3]);
+    // An even sky stays as it is, however it is turned.
+    const double n = has_map ? sqrt((double)q[0] * q[0] + (double)q[1] * q[1] +
+                                    (double)q[2] * q[2] + (double)q[3] * q[3])
+                             : 0;
     double x = n > 0 ? q[0] / n : 0, y = n > 0 ? q[1] / n : 0, z = n > 0 ? q[2] / n : 0;
     double w = n > 0 ? q[3] / n : 1;
     const double map_to_world[3][3] = {

@@ -216,6 +216,13 @@ static void turn_map(stage *st)
     memcpy(st->scene.environment.rotation, (float[]){0, 0.1f, 0, 0.995f}, sizeof(float[4]));
 }
 
+static void even_sky(stage *st)
+{
+    free(st->scene.environment.data);
+    st->scene.environment.data = NULL;
+    memset(st->scene.environment.size, 0, sizeof st->scene.environment.size);
+}
+
 static void replace_map(stage *st)
 {
     st->scene.environment.data[5] *= 1.5f;
@@ -512,6 +519,18 @@ static void strengths_are_values(void **state)
     assert_null(strstr(c.ran, "radial_beam"));
 }
 
+// A sky that is even looks the same however it is turned.
+static void even_skies_do_not_turn(void **state)
+{
+    (void)state;
+    const cost c = cost_of("pop", &(struct event){"", even_sky, turn_map, false, false});
+    assert_int_equal(c.record, 'y');
+    assert_string_equal(c.ran, "");
+    const cost dimmed = cost_of("pop", &(struct event){"", even_sky, scale_map, false, false});
+    assert_non_null(strstr(dimmed.ran, "sky_light"));
+    assert_null(strstr(dimmed.ran, "sky_shadows"));
+}
+
 // A light that is off and stays off costs what one costs that is not there.
 static void dark_lights_are_not_there(void **state)
 {
@@ -543,11 +562,9 @@ int main(int argc, char **argv)
         return 0;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(page_is_true),
-        cmocka_unit_test(values_do_not_refuse),
-        cmocka_unit_test(samples_are_values),
-        cmocka_unit_test(strengths_are_values),
-        cmocka_unit_test(dark_lights_are_not_there),
+        cmocka_unit_test(page_is_true),           cmocka_unit_test(values_do_not_refuse),
+        cmocka_unit_test(samples_are_values),     cmocka_unit_test(strengths_are_values),
+        cmocka_unit_test(even_skies_do_not_turn), cmocka_unit_test(dark_lights_are_not_there),
     };
     return run_cases(tests, NULL, NULL);
 }
