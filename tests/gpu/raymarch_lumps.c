@@ -1,6 +1,7 @@
 // raymarch_lumps.c -- the ray march of a lumpy medium against a CPU twin, and what it skips, moves and refuses there.
 #include "raymarch_stage.h"
 #include "bound.h"
+#include "numbers.h"
 #include "random_unit.h"
 #include "shaders/common/counters.h"
 #include <math.h>
