@@ -57,11 +57,11 @@ void main()
         bool fixed_one = n < ordinates.num_fixed;
         uint first_of = fixed_one ? n : ordinates.num_fixed + (n - ordinates.num_fixed) * args.fan;
         vec2 lit = vec2(0.0), sure = vec2(0.0), even_lit = vec2(0.0);
-        float power = 0.0, texel = 0.0;
+        float power = 0.0, even_power = 0.0, texel = 0.0;
         for (uint k = 0u; k < (fixed_one ? 1u : args.fan); k++) {
             ordinate part = directions.list[first_of + k];
             shadow_light map = sky_map_of(first_of + k);
-            float light = dot(part.irradiance, vec3(1.0)) + 1e-6 * (fixed_one ? 1.0 : part.even);
+            float light = fixed_one ? 1.0 : dot(part.irradiance, args.tint);
             texel = max(texel, 2.0 / (map.texels * min(length(map.rows[0].xyz), length(map.rows[1].xyz))));
             for (int i = 0; i < 2; i++) {
                 uint by = sky_map_lights(map, places[i][k]);
@@ -71,9 +71,13 @@ void main()
                 sure[i] = (by & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : sure[i];
             }
             power += light;
-            all += part.even;
+            even_power += part.even;
         }
-        vec2 share = lit / max(power, 1e-37);
+        all += even_power;
+        vec2 share = lit / max(power, 1e-30);
+        if (power < 1e-30 && even_power > 0.0) {
+            share = even_lit / even_power; // the map is black there
+        }
         for (int i = 0; i < 2; i++) {
             bool dark = (beside[i] || texel > box.dx) && sure[i] == 0.0;
             share[i] = dark ? 0.0 : min(share[i], 1.0);

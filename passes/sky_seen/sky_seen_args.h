@@ -6,5 +6,6 @@ struct sky_seen_args {
     tyn_uvec3 dims;  // cells
     tyn_uint count;  // ordinates at most
     tyn_uint fan;    // directions of each
+    tyn_vec3 tint;   // of the sky's radiance: its share of the map's colours, the most is 1
 };
-TYN_ASSERT_SIZE(sky_seen_args, 32);
+TYN_ASSERT_SIZE(sky_seen_args, 44);

@@ -57,8 +57,15 @@ static void cells_see_what_rays_see(void **state)
                                          .near_hi = {2, 2, 2},
                                          .count = FIXED + (COUNT - FIXED) * FAN,
                                          .num_triangles = scene.scene.surfaces.num_triangles};
-    const tyn_sky_seen_params params = {
-        .extent = {2, 2, 2}, .dims = {CELLS, CELLS, CELLS}, .count = COUNT, .fan = FAN};
+    const tyn_sky_seen_params params = {.extent = {2, 2, 2},
+                                        .dims = {CELLS, CELLS, CELLS},
+                                        .count = COUNT,
+                                        .fan = FAN,
+                                        .tint = {1, 0, 0}};
+    // The map's green does not count under a red sky.
+    for (uint32_t k = 0; k < maps.count; k++) {
+        scene.directions.list[k].irradiance[1] = (float)(k % 3) * 7;
+    }
     tyn_graph_begin(t->graph);
     tyn_ref sky[TYN_MAX_PORTS] = {{0}};
     sky_scene_upload(t, &scene, sky, &maps);

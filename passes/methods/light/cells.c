@@ -127,6 +127,12 @@ static void add_seen(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_put_lattice(&s->lattice.shape, params.extent, params.dims);
     params.count = s->sky.count;
     params.fan = s->sky.fan;
+    // In steps of 1/256, so that a sky that is dimmed keeps them through rounding.
+    const float *radiance = job->frame->environment.radiance;
+    const float most = fmaxf(radiance[0], fmaxf(radiance[1], radiance[2]));
+    for (int c = 0; c < 3; c++) {
+        params.tint[c] = most > 0 ? roundf(256 * radiance[c] / most) / 256 : 1;
+    }
     tyn_ref refs[TYN_MAX_PORTS] = {[SKY_SEEN_PORT_ORDINATES] = s->sky.unlit_ordinates,
                                    [SKY_SEEN_PORT_DIRECTIONS] = s->sky.unlit_directions};
     tyn_connect(refs, SKY_SEEN_PORT_SKY_ATLAS, s->sky.maps);

@@ -25,7 +25,7 @@ typedef struct tyn_lamps {
 typedef struct tyn_sky {
     tyn_ref map;       // the environment's without its suns; {0} if the environment is constant
     tyn_ref ordinates; // struct ordinates_block; {0} if nothing shines from ordinates
-    // The same for a radiance of 1, suns without light: stays when the sky is dimmed. For what reads directions alone.
+    // The same for a radiance of 1, suns without light: stays when the sky is dimmed. For directions, and the map's light.
     tyn_ref unlit_ordinates, unlit_directions;
     uint32_t count; // ordinates at most
     bool split; // they carry the map less its mean, env_block.sky, which comes in from all sides
