@@ -472,6 +472,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
         return;
     }
     out->num_triangles = b->num_triangles = surfaces->num_triangles;
+    out->num_vertices = surfaces->num_vertices;
     out->emitters = data->emitters ? ((const struct surface_table *)data->emitters)->weight : 0.0f;
     out->num_textures = surfaces->num_textures;
     if (surfaces->num_triangles <= TYN_SURFACE_FEW) {

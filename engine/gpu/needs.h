@@ -8,6 +8,7 @@
     "a kernel that binds more than the device takes is refused when a scene needs it"
 #define TYN_NEED_LARGER "a scene that needs a larger one is refused in a line that names it"
 #define TYN_MOST_SIDE 16384 // of pictures, pixels
+#define TYN_MOST_INDEX 16777215u // of a vertex that is drawn by index; without the feature fullDrawIndexUint32
 #define TYN_NEED_BY_KIND "262144 if such a card is discrete, else 8192" // capacity.c
 
 // What a row is for, and the fallback without it; NULL: none, the device cannot be used.
@@ -34,6 +35,7 @@
     LIMIT(maxImageDimension2D, TYN_MOST_SIDE, "pictures of 16384 pixels a side; shadow maps", "smaller pictures, fewer samples of surfaces; a map that is larger is refused in a line that names it") \
     LIMIT(maxImageDimension3D, 2048, "volumes of 2048 voxels a side; light of several suns and lamps in one image", TYN_NEED_LARGER) \
     LIMIT(maxStorageBufferRange, 134217728, "buffers of 128 MiB", NULL) \
+    LIMIT(maxDrawIndexedIndexValue, TYN_MOST_INDEX, "vertices of surfaces under a sky", "all devices have it; scenes with more are refused") \
     LIMIT(maxTexelBufferElements, 33554432, "... read as texels of 4 bytes", TYN_NEED_LARGER) \
     LIMIT(maxComputeSharedMemorySize, 32768, "coarse levels of the lattice in one workgroup", "fewer cells in it") \
     LIMIT(maxPerStageDescriptorStorageImages, 11, "most images that a kernel writes", TYN_NEED_REFUSED) \

@@ -14,7 +14,7 @@ typedef struct tyn_sky_shadows_params {
     uint32_t count; // directions at most
     bool wide;      // surfaces stand beyond the reach: each direction has a second map, of all
     float near_lo[3], near_hi[3]; // tyn_frame_scene.near_lo, near_hi
-    uint32_t num_triangles;
+    uint32_t num_triangles, num_vertices;
 } tyn_sky_shadows_params;
 
 // clang-format off
@@ -22,7 +22,7 @@ typedef struct tyn_sky_shadows_params {
     X(SKY_SHADOWS, SURFACES, surfaces, IN, BUFFER, "struct surface_block"), \
     X(SKY_SHADOWS, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
     X(SKY_SHADOWS, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \
-    X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions; of their light nothing is read"), \
+    X(SKY_SHADOWS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block: the directions, without their light"), \
     X(SKY_SHADOWS, SKY_ATLAS, sky_atlas, OUT, IMAGE_2D, \
         "reversed depth of what each map sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
     X(SKY_SHADOWS, SKY_MAPS, sky_maps, OUT, BUFFER, "struct shadow_light[]: of each direction, and of each around all surfaces"), \

@@ -71,6 +71,7 @@ static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *
     params.count = count;
     params.wide = params.reach > 0.0f && tyn_reach_beyond(job->frame, params.reach);
     params.num_triangles = job->frame->num_triangles;
+    params.num_vertices = job->frame->num_vertices;
     memcpy(params.near_lo, job->frame->near_lo, sizeof params.near_lo);
     memcpy(params.near_hi, job->frame->near_hi, sizeof params.near_hi);
     tyn_ref refs[TYN_MAX_PORTS] = {

@@ -55,7 +55,8 @@ typedef struct tyn_frame_scene {
     float majorant;         // no place has a larger extinction in any channel, 1/m
     bool empty;             // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
-    uint32_t num_textures;  // of their materials
+    uint32_t num_vertices;
+    uint32_t num_textures; // of their materials
     // Area times the largest channel of the emission, of all that emit, W/sr; 0 if there are none, or no tyn_scene_refs.emitters.
     float emitters;
     struct surface_block surfaces;
