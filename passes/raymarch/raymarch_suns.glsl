@@ -141,7 +141,7 @@ vec3 march_sunlight(const march_sun sun, const march_medium unit, const march_me
 struct march_shadows {
     uint known, lit;
     uint edges; // of shadows that the ray has crossed
-    uint looks, beside; // looks beside the ray, and those which find other light than on it
+    uint looks, beside; // looks beside the ray, and those that find light where the ray finds none, or none where it finds some
     float inside; // where to look at the farthest
     vec2 across;  // of a pixel: at the eye, and more with each metre from it
 };
@@ -164,12 +164,6 @@ bool march_sees(bool sun, const march_map m, float s, vec3 moved, uint by)
 {
     vec3 q = m.from + s * m.along + moved;
     return ((sun ? shadow_lit_by(shadow_atlas, shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
-}
-
-// Rays of the first grid do: between these thin shafts may go unseen.
-bool march_looks_beside()
-{
-    return raymarch_has(RAYMARCH_SPARSE_NODES) && args.rays == RAYMARCH_ALL_NODES;
 }
 
 // What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the
@@ -196,10 +190,13 @@ march_lit march_lit_of(bool sun, const march_map map, uint bit, float s, float d
         uint by = lit || hi > 0.0 ? SHADOW_LIT_BY_HALF : SHADOW_LIT_BY_ALL;
         float at = min(s + next, shadow.inside);
         bool sees = march_sees(sun, map, at, vec3(0.0), by);
-        if (march_looks_beside() && hi <= 0.0) {
-            bool beside = march_sees(sun, map, at, march_beside(map, at, shadow), by);
-            shadow.beside += beside != sees ? 1u : 0u;
-            shadow.looks++;
+        // Between rays of the first grid thin shafts may go unseen.
+        if (raymarch_has(RAYMARCH_SPARSE_NODES)) {
+            if (args.rays == RAYMARCH_ALL_NODES && hi <= 0.0) {
+                bool beside = march_sees(sun, map, at, march_beside(map, at, shadow), by);
+                shadow.beside += beside != sees ? 1u : 0u;
+                shadow.looks++;
+            }
         }
         lit = known ? lit : sees;
         known = true;
