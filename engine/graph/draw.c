@@ -131,8 +131,8 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
                                                : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         }
     }
-    if (d->indexed && !n->res[d->indices]) {
-        recorder_fail(r, TYN_ERR_PARAMS, "a draw's indices must exist; not so",
+    if (d->indexed && (!n->res[d->indices] || n->pass->ports[d->indices].dim != TYN_BUFFER)) {
+        recorder_fail(r, TYN_ERR_PARAMS, "indexed draw: must be a buffer of uint32_t: port",
                       n->pass->ports[d->indices].name);
         return;
     }

@@ -72,7 +72,7 @@ typedef struct args {
 } args;
 
 typedef struct draw_params {
-    uint32_t kernel, vertices, tiles, again, flat, indexed;
+    uint32_t kernel, vertices, tiles, again, flat, indexed, indices;
 } draw_params;
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -99,7 +99,7 @@ static void record(tyn_recorder *r, const void *params)
                                 .num_tiles = p->tiles,
                                 .args = &plain,
                                 .indexed = p->indexed,
-                                .indices = INDICES,
+                                .indices = (uint8_t)p->indices,
                                 .spec = (const uint32_t[]){p->flat}});
     if (p->again) {
         tyn_rec_draw(r, &(tyn_draw){.kernel = p->kernel,
@@ -286,13 +286,38 @@ static void tiles_have_their_own_constants(void **state)
 
 static void indices_choose_the_corners(void **state)
 {
-    pictures p = draw(*state, (draw_params){.vertices = 6, .indexed = 1}, 0.75f, NULL);
+    pictures p =
+        draw(*state, (draw_params){.vertices = 6, .indexed = 1, .indices = INDICES}, 0.75f, NULL);
     for (uint32_t y = 0; y < SIZE; y++) {
         for (uint32_t x = 0; x < SIZE; x++) {
             const bool drawn = y < SIZE / 2;
             expect(&p, x, y, 0, drawn, drawn ? -1 : 0, drawn ? 0.75f : 0);
         }
     }
+}
+
+static void indices_must_be_a_buffer(void **state)
+{
+    gpu_test *t = *state;
+    t->quiet = true;
+    corner c[12];
+    corners(c, 0);
+    const float texel[4] = {0};
+    for (int image = 0; image < 2; image++) {
+        tyn_graph_begin(t->graph);
+        tyn_ref refs[6] = {gpu_buffer(t, "corners", c, sizeof c)};
+        if (image) {
+            refs[ADDITION] =
+                gpu_image(t, "addition", TYN_IMAGE_2D, (tyn_extent){1, 1, 1}, 4, texel);
+        }
+        const draw_params params = {
+            .vertices = 3, .indexed = 1, .indices = image ? ADDITION : INDICES};
+        assert_int_equal(tyn_graph_add(t->graph, &triangles, &params, refs), TYN_OK);
+        tyn_graph_output(t->graph, "color", refs[COLOR], true);
+        assert_int_equal(gpu_try(t), TYN_ERR_PARAMS);
+        assert_non_null(strstr(t->last_error, "must be a buffer of uint32_t"));
+    }
+    t->quiet = false;
 }
 
 static void second_draw_keeps_the_first(void **state)
@@ -374,6 +399,7 @@ int main(void)
         cmocka_unit_test(back_faces_are_culled),
         cmocka_unit_test(tiles_have_their_own_constants),
         cmocka_unit_test(indices_choose_the_corners),
+        cmocka_unit_test(indices_must_be_a_buffer),
         cmocka_unit_test(second_draw_keeps_the_first),
         cmocka_unit_test(depth_alone_is_drawn),
         cmocka_unit_test(queues_without_graphics_are_refused),
