@@ -101,10 +101,19 @@ static error compare(gpu_test *t, const shafts *s)
     error e = {{0}, {0}};
     for (uint32_t k = bands ? 0 : SHAFTS - 1; k < SHAFTS; k++) {
         const int wide = slit_width(k) > 1;
-        print_message("%s, %u pixels wide, phase %u: %.4f of the light, worst pixel %.4f\n",
-                      s->name, slit_width(k), k % PHASES, kept[k] / light[k], off[k] / brightest);
+        if (bands) {
+            print_message("%s, %u pixels wide, phase %u", s->name, slit_width(k), k % PHASES);
+        } else {
+            print_message("%s, all shafts", s->name);
+        }
+        print_message(": %.4f of the light, worst pixel %.4f\n", kept[k] / light[k],
+                      off[k] / brightest);
         e.light[wide] = maximum(e.light[wide], fabs(kept[k] / light[k] - 1));
         e.pixel[wide] = maximum(e.pixel[wide], off[k] / brightest);
+    }
+    if (!bands) {
+        e.light[0] = e.light[1];
+        e.pixel[0] = e.pixel[1];
     }
     print_message("%s: %u pixels of %u differ\n", s->name, differ, SIZE * SIZE);
     picture_free(&all);
