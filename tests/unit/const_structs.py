@@ -9,12 +9,24 @@ import os
 import re
 import sys
 
-FUNCTION = re.compile(r"^\w+ (\w+)\(([^;{}()]*)\)\s*\n\{\n(.*?)^\}", re.M | re.S)
+FUNCTION = re.compile(r"^\w+ (\w+)\(([^;{}()]*)\)\s*\{\n(.*?)^\}", re.M | re.S)
 STRUCT = re.compile(r"\bstruct\s+(\w+)\s*\{")
 
 
 def is_written(name, body):
-    return re.search(rf"\b{name}(\.\w+|\[[^\]]*\])*\s*(=(?!=)|[-+*/&|^%]=|<<=|>>=|\+\+|--)", body) is not None
+    return re.search(rf"(?:\+\+|--)\s*{name}\b|\b{name}(\.\w+|\[[^\]]*\])*\s*(=(?!=)|[-+*/&|^%]=|<<=|>>=|\+\+|--)", body) is not None
+
+
+def is_given(name, body, changers):
+    """As an argument to a function that changes one."""
+    for call in re.finditer(r"\b(\w+)\(", body):
+        depth, end = 1, call.end()
+        while depth and end < len(body):
+            depth += {"(": 1, ")": -1}.get(body[end], 0)
+            end += 1
+        if call[1] in changers and re.search(rf"\b{name}\b", body[call.end():end]):
+            return True
+    return False
 
 
 def faults(path, text, structs, changers):
@@ -22,9 +34,9 @@ def faults(path, text, structs, changers):
     for found in FUNCTION.finditer(text):
         for parameter in found[2].split(","):
             words = parameter.split()
+            words = words[1:] if words[:1] == ["in"] else words
             if len(words) == 2 and words[0] in structs and "[" not in words[1]:
-                given = re.search(rf"\b(?:{'|'.join(changers)})\([^;]*\b{words[1]}\b", found[3]) if changers else None
-                if not is_written(words[1], found[3]) and not given:
+                if not is_written(words[1], found[3]) and not is_given(words[1], found[3], changers):
                     line = text.count("\n", 0, found.start()) + 1
                     yield f"{path}:{line}: {found[1]}: const {parameter.strip()}"
 
