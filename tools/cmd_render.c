@@ -667,7 +667,8 @@ static const option output_table[] = {
     {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
      "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},
     {0, "change", OPT_TEXT, AT(change), "none|camera|light|sky",
-     "with --frames N: time frames in which only this changes; sky: gets 1 % darker",
+     "with --frames N: time frames in which only this changes; light: suns and maps turn, lamps "
+     "get 1 % darker; sky: gets 1 % darker",
      .names = changes},
 };
 

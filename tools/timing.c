@@ -54,7 +54,7 @@ static bool can_change(const tyn_scene *scene, timing_change change)
 {
     const tyn_environment *e = &scene->environment;
     return change == TIMING_LIGHT ? scene->num_lights || (e->present && e->size[0])
-           : change == TIMING_SKY ? e->present && e->strength > 0
+           : change == TIMING_SKY ? e->present && tyn_environment_strength(e) > 0
                                   : true;
 }
 
@@ -81,7 +81,8 @@ static void step(tyn_scene *scene, tyn_camera *camera, timing_change change)
     } else if (change == TIMING_LIGHT) {
         step_lights(scene);
     } else if (change == TIMING_SKY) {
-        scene->environment.strength *= 1 - step_share;
+        scene->environment.strength =
+            tyn_environment_strength(&scene->environment) * (1 - step_share);
     }
 }
 
