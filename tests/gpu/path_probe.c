@@ -26,7 +26,9 @@ static void probes_in_vacuum(void **state)
     const double off = 2 * gpu_ulps(*state, GPU_ROOT + GPU_QUOTIENT) / (c - 0.97) * 8 / r2 * a * a;
     path_scene_check("spot, penumbra", p[1].fluence[1], off, 8 / r2 * a * a);
     path_scene_check("spot, flux along x", p[1].flux[1], off, 8 / r2 * a * a * 0.4 / sqrt(r2));
-    assert_true((double)p[1].fluence_se[1] <= 1e-6 * (double)p[1].fluence[1]);
+    // Sixteen samples that may each be off as the mean may (path_scene_check): rounding differs among invocations.
+    const double spread = 3.5 * off / sqrt(15);
+    assert_true((double)p[1].fluence_se[1] <= 1e-6 * (double)p[1].fluence[1] + spread);
 }
 
 // Light that an absorbing cube leaves of a sun, and of a sky without any medium.
