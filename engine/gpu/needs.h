@@ -1,6 +1,7 @@
 // needs.h -- all that the library asks of a device, in one table: devices are chosen, made and listed by it.
 #pragma once
 #include <tyndall/device.h>
+#include <tyndall/pass.h>
 #include "gpu/procs.h"
 
 // A limit that kernels of some passes exceed on small devices (pipeline.c).
@@ -8,7 +9,6 @@
     "a kernel that binds more than the device takes is refused when a scene needs it"
 #define TYN_NEED_LARGER "a scene that needs a larger one is refused in a line that names it"
 #define TYN_MOST_SIDE 16384 // of pictures, pixels
-#define TYN_MOST_INDEX 16777215u // of a vertex that is drawn by index; without the feature fullDrawIndexUint32
 #define TYN_NEED_BY_KIND "262144 if such a card is discrete, else 8192" // capacity.c
 
 // What a row is for, and the fallback without it; NULL: none, the device cannot be used.

@@ -37,9 +37,6 @@ static const tyn_param params_table[] = {
 
 enum { MAX_MAPS = 2 * TYN_ORDINATES_MAX };
 
-// Of a vertex, on any device (limit maxDrawIndexedIndexValue without the feature fullDrawIndexUint32).
-static const uint32_t MOST_INDEX = 16777215;
-
 static uint32_t num_maps(const tyn_sky_shadows_params *p)
 {
     return p->wide ? 2 * p->count : p->count;
@@ -64,10 +61,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
                          "sky_shadows: count is %u; must be 1 to %d directions", p->count,
                          TYN_ORDINATES_MAX);
     }
-    if (p->num_vertices > MOST_INDEX) {
+    if (p->num_vertices > TYN_MOST_INDEX) {
         return TYN_FAULT(tyn_build_log(b), TYN_ERR_PARAMS,
                          "sky_shadows: surfaces have %u vertices; must be at most %u under a sky",
-                         p->num_vertices, MOST_INDEX);
+                         p->num_vertices, TYN_MOST_INDEX);
     }
     tyn_build_image(b, SKY_SHADOWS_PORT_SKY_ATLAS,
                     (tyn_extent){side * texels, (maps + side - 1) / side * texels, 1}, 1);

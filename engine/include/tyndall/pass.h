@@ -315,6 +315,9 @@ typedef struct tyn_tile {
     uint32_t first, vertices; // of the draw's: from which on, and how many; 0, 0: all of them
 } tyn_tile;
 
+// The largest index that all devices draw by (Vulkan: maxDrawIndexedIndexValue without fullDrawIndexUint32).
+#define TYN_MOST_INDEX 16777215u
+
 // One draw into each tile; all tiles in one go, in order, without barriers between them. The attachments
 // must be of one size. The queue must do graphics: recording fails where it cannot.
 typedef struct tyn_draw {
@@ -325,8 +328,8 @@ typedef struct tyn_draw {
     const void *args;
     bool keep;            // draw over what is there; else all of the attachments is cleared first
     bool keep_depth;      // ... but for the depth, which an earlier draw has laid down
-    bool indexed;         // vertices are elements of the port `indices`, a buffer of uint32_t:
-    uint8_t indices;      // corners that triangles share are computed once
+    bool indexed;         // vertices are elements of the port `indices`, a buffer of uint32_t up
+    uint8_t indices;      // to TYN_MOST_INDEX: corners that triangles share are computed once
     const uint8_t *ports; // NULL = the table's; else num_bindings port indices
     const uint32_t *spec; // num_spec values, NULL = zeros
     const char *label;
