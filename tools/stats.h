@@ -15,9 +15,9 @@ typedef struct stats {
     double cold_ms, camera_moved_ms, light_moved_ms, sky_dimmed_ms, unchanged_ms;
     const tyn_report *report;
     tyn_pipeline_stats pipelines; // of the device
-    const char *warnings[3]; // beside those of the scene and the report; NULL = none
-    const cJSON *choice;     // what --max-error and --budget-ms chose; NULL = nothing was asked
-    const char *inputs[4];   // paths; NULL = none
+    const char *warnings[3];      // beside those of the scene and the report; NULL = none
+    const cJSON *choice;   // what --max-error and --budget-ms chose; NULL = nothing was asked
+    const char *inputs[4]; // paths; NULL = none
 } stats;
 
 cJSON *stats_make(const stats *s);

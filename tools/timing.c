@@ -54,7 +54,7 @@ static bool can_change(const tyn_scene *scene, timing_change change)
 {
     const tyn_environment *e = &scene->environment;
     return change == TIMING_LIGHT ? scene->num_lights || (e->present && e->size[0])
-           : change == TIMING_SKY ? e->present && tyn_environment_strength(e) > 0
+           : change == TIMING_SKY ? e->present
                                   : true;
 }
 

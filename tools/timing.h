@@ -10,9 +10,8 @@ typedef enum timing_change {
     TIMING_SKY,       // the environment gets darker
 } timing_change;
 
-// Renders `frames` frames and gives the median of their times in ms; before them one that is not timed where
-// something changes. TIMING_LIGHT leaves the scene's
-// lights turned, TIMING_SKY its environment darker. Gives the exit code.
+// Renders `frames` frames and gives the median of their times in ms; before them one that is not timed where something
+// changes. TIMING_LIGHT leaves the scene's lights turned, TIMING_SKY its environment darker. Gives the exit code.
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms);
 
