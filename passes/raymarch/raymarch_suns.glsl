@@ -182,6 +182,7 @@ march_lit march_lit_of(bool sun, const march_map map, uint bit, float s, float d
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
     // these are what costs time.
     float lo = 0.0, hi = 0.0;
+    bool asked = false, aside = false; // the look before was beside the ray, and what it found
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;
@@ -189,13 +190,21 @@ march_lit march_lit_of(bool sun, const march_map map, uint bit, float s, float d
         // within the ray.
         uint by = lit || hi > 0.0 ? SHADOW_LIT_BY_HALF : SHADOW_LIT_BY_ALL;
         float at = min(s + next, shadow.inside);
-        bool sees = march_sees(sun, map, at, vec3(0.0), by);
-        // Between rays of the first grid thin shafts may go unseen.
+        // Between rays of the first grid thin shafts may go unseen: these look beside each place first.
+        bool beside = false;
+        vec3 moved = vec3(0.0);
         if (raymarch_has(RAYMARCH_SPARSE_NODES)) {
-            if (args.rays == RAYMARCH_ALL_NODES && hi <= 0.0) {
-                bool beside = march_sees(sun, map, at, march_beside(map, at, shadow), by);
-                shadow.beside += beside != sees ? 1u : 0u;
-                shadow.looks++;
+            beside = !asked && args.rays == RAYMARCH_ALL_NODES && hi <= 0.0;
+            moved = beside ? march_beside(map, at, shadow) : moved;
+        }
+        bool sees = march_sees(sun, map, at, moved, by);
+        if (raymarch_has(RAYMARCH_SPARSE_NODES)) {
+            shadow.looks += beside ? 1u : 0u;
+            shadow.beside += asked && aside != sees ? 1u : 0u;
+            asked = beside;
+            aside = sees;
+            if (beside) {
+                continue;
             }
         }
         lit = known ? lit : sees;
