@@ -1,6 +1,5 @@
 // choice_setup.c -- --max-error and --budget-ms: method and settings that are chosen for a scene.
 #include "choice_setup.h"
-#include "ceilings_cache.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>
@@ -287,32 +286,28 @@ static int take_choice(app *a, const choose_request *request, const choice *best
 
 // ---- choosing ---------------------------------------------------------------------------------
 
-// How much longer than the device of the measurements this one takes: by the ceilings of both.
-static int slowness_of(app *a, const fronts_device *measured, const machine *mach, double *slowness)
+static double ratio_of(double here, double measured)
 {
-    *slowness = 1;
-    if (!(measured->fma_gflops > 0)) {
+    return here > 0 && measured > 0 ? here / measured : 1;
+}
+
+// How much longer than the device of the measurements this one takes, by kind of kernel.
+static int slowness_of(app *a, const fronts_device *measured, const machine *mach, paces *slowness)
+{
+    *slowness = (paces){1, 1, 1};
+    const paces *there = &measured->paces;
+    if (!(there->solve_ms > 0)) {
         if (strcmp(tyn_device_name(mach->device), measured->name) != 0) {
-            app_warn(a, "times are those of %s: its ceilings were not measured",
+            app_warn(a, "times are those of %s: its paces were not measured",
                      measured->name[0] ? measured->name : "another device");
         }
         return EXIT_DONE;
     }
-    ceilings here;
-    int code = ceilings_known(a, mach->device, &here);
-    const double pairs[][2] = {{measured->fma_gflops, here.fma_gflops},
-                               {measured->copy_gb_s, here.copy_gb_s},
-                               {measured->trilinear_gsamples_s, here.trilinear_gsamples_s},
-                               {measured->exp_gops_s, here.exp_gops_s}};
-    double sum = 0;
-    int count = 0;
-    for (size_t i = 0; i < ARRAY_SIZE(pairs) && code == EXIT_DONE; i++) {
-        if (pairs[i][0] > 0 && pairs[i][1] > 0) {
-            sum += log(pairs[i][0] / pairs[i][1]);
-            count++;
-        }
-    }
-    *slowness = count ? exp(sum / count) : 1;
+    paces here;
+    const int code = paces_known(a, mach->device, &here);
+    *slowness =
+        (paces){ratio_of(here.solve_ms, there->solve_ms), ratio_of(here.pixel_ns, there->pixel_ns),
+                ratio_of(here.sample_ns, there->sample_ns)};
     return code;
 }
 
@@ -357,7 +352,7 @@ int choice_make(app *a, const choice_options *options, const method_options *how
         without = regime_of(scene, &camera, &r) ? left_out(&f, &r) : NULL;
         code = without ? EXIT_DONE : app_exit_code(a, TYN_ERR_MEMORY, false);
     }
-    double slowness = 1;
+    paces slowness = {1, 1, 1};
     if (code == EXIT_DONE) {
         code = slowness_of(a, &f.device, mach, &slowness);
     }

@@ -8,6 +8,7 @@ typedef struct candidate {
     const fronts_run *run;
     uint32_t spp;
     prediction p;
+    double ms; // on the device at hand
     margin_slopes slopes;
 } candidate;
 
@@ -36,7 +37,13 @@ static bool meets_error(const chooser *c, const candidate *k)
 
 static bool meets_budget(const chooser *c, const candidate *k)
 {
-    return isnan(c->request->budget_ms) || k->p.ms * ms_margin(k) <= c->request->budget_ms;
+    return isnan(c->request->budget_ms) || k->ms * ms_margin(k) <= c->request->budget_ms;
+}
+
+static double ms_of(const prediction *p, uint32_t spp, const paces *slowness)
+{
+    return p->fixed_ms * slowness->solve_ms +
+           p->pixels_ms * (spp ? slowness->sample_ns : slowness->pixel_ns);
 }
 
 static bool predict_candidate(const chooser *c, candidate *k, uint32_t spp)
@@ -46,7 +53,7 @@ static bool predict_candidate(const chooser *c, candidate *k, uint32_t spp)
         return false;
     }
     k->p.error *= c->share;
-    k->p.ms *= c->request->slowness;
+    k->ms = ms_of(&k->p, spp, &c->request->slowness);
     return true;
 }
 
@@ -102,7 +109,7 @@ static bool better(const chooser *c, const candidate *a, const candidate *b, dou
     if (judged_by_error(c, a) && fmax(ea, eb) > alike * least) {
         return ea < eb;
     }
-    return a->p.ms * ms_margin(a) < b->p.ms * ms_margin(b);
+    return a->ms * ms_margin(a) < b->ms * ms_margin(b);
 }
 
 static bool seen_before(const fronts *f, uint32_t scene, uint32_t run)
@@ -176,7 +183,7 @@ bool choose(const fronts *f, const regime *r, const choose_request *request, cho
         out->run = best.run;
         out->spp = best.spp;
         out->error = best.p.error;
-        out->ms = best.p.ms;
+        out->ms = best.ms;
         out->limit = best.p.limit.key;
         out->error_margin = error_margin(&best);
         out->ms_margin = ms_margin(&best);
@@ -191,7 +198,7 @@ bool choose(const fronts *f, const regime *r, const choose_request *request, cho
         if (best_of(&c, best.run->method, &other)) {
             out->other = other.run;
             out->other_error = other.p.error;
-            out->other_ms = other.p.ms;
+            out->other_ms = other.ms;
             out->other_spp = other.spp;
             out->other_limit = other.p.limit.key;
         }
@@ -212,7 +219,7 @@ bool choose_outlook(const fronts *f, const regime *r, const char *method, uint32
     neighbours_finish(&n);
     if (found) {
         *error = p.error * share_of_medium(r);
-        *ms = p.ms;
+        *ms = p.fixed_ms + p.pixels_ms;
     }
     return found;
 }

@@ -19,7 +19,7 @@ typedef struct choose_request {
     const char *method;  // NULL: any
     const char *without; // methods that cannot do the scene, " path single "; NULL: none
     uint32_t width, height;
-    double slowness; // this device's time over that of the fronts' device
+    paces slowness; // this device's times over those of the fronts' device
 } choose_request;
 
 typedef struct choice {

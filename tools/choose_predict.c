@@ -256,8 +256,8 @@ bool predict(const neighbours *n, const regime *r, const fronts_run *run, uint32
     p->error_distance = mean_of(n, false, run->key, spp, &error);
     p->ms_distance = mean_of(n, true, run->key, spp, &cost);
     p->error = exp(error.error) * noise_of(r, spp) * noise_of_edges(r, spp, pixels, n->by_pixel);
-    p->ms = exp(cost.fixed_ms) * fixed_work(r, spp) +
-            exp(cost.pixel_ms) * work_of_pixels(r, spp) * pixels;
+    p->fixed_ms = exp(cost.fixed_ms) * fixed_work(r, spp);
+    p->pixels_ms = exp(cost.pixel_ms) * work_of_pixels(r, spp) * pixels;
     p->limit = regime_limit_of(r, run->method, run->cells);
     if (p->limit.error > p->error) {
         p->error = p->limit.error;
@@ -326,7 +326,7 @@ bool margins_find(const fronts *f, const char *method, bool by_pixel, margin_slo
                 const double took = run->fixed_ms + run->pixel_ms * pixels;
                 error[count] =
                     log(error_of(run, by_pixel) / p.error) / (closest + p.error_distance);
-                ms[count++] = log(took / p.ms) / (closest + p.ms_distance);
+                ms[count++] = log(took / (p.fixed_ms + p.pixels_ms)) / (closest + p.ms_distance);
             }
         }
         neighbours_finish(&n);

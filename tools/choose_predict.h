@@ -23,7 +23,8 @@ void neighbours_finish(neighbours *n);
 bool run_is_known(const fronts_scene *scene, const char *key, uint32_t spp, bool by_pixel);
 
 typedef struct prediction {
-    double error, ms;                   // error: of the medium's light
+    double error;                       // of the medium's light
+    double fixed_ms, pixels_ms;         // on the device that was measured
     double error_distance, ms_distance; // of the nearest scene it is taken from
     regime_limit limit;                 // what the error is where that is known to be more
 } prediction;

@@ -83,6 +83,9 @@ static int open_machine(app *a, const bench_args *args, const bench_suite *suite
         on->library = library_hash();
         code = suite->ceilings ? ceilings_measure(a, m->device, &on->ceilings) : EXIT_DONE;
     }
+    if (code == EXIT_DONE && args->fronts) {
+        code = paces_measure(a, m->device, &on->paces);
+    }
     return code;
 }
 

@@ -94,15 +94,11 @@ static bool read_scene(const cJSON *json, fronts_scene *scene)
 
 static void read_device(const cJSON *json, fronts_device *d)
 {
-    const cJSON *device = json_at(json, "device"), *ceilings = json_at(json, "ceilings");
+    const cJSON *device = json_at(json, "device");
     *d = (fronts_device){
         .name = json_text_at(device, "name"),
         .driver = json_text_at(device, "driver"),
-        .fma_gflops = json_number_at(ceilings, "fma_gflops", 0),
-        .copy_gb_s = json_number_at(ceilings, "copy_gb_s", 0),
-        .trilinear_gsamples_s = json_number_at(ceilings, "trilinear_gsamples_s", 0),
-        .exp_gops_s = json_number_at(ceilings, "exp_gops_s", 0),
-        .dispatch_us = json_number_at(ceilings, "dispatch_us", 0),
+        .paces = paces_read(json_at(json, "paces")),
     };
 }
 

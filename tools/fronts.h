@@ -4,6 +4,7 @@
 // form. One is compiled into the tool.
 #pragma once
 #include "app.h"
+#include "paces.h"
 #include "regime.h"
 
 extern const char fronts_schema[];
@@ -30,10 +31,10 @@ typedef struct fronts_scene {
     uint32_t num_runs;
 } fronts_scene;
 
-// Ceilings of the device that was measured; 0: not measured.
+// What was measured on.
 typedef struct fronts_device {
     const char *name, *driver;
-    double fma_gflops, copy_gb_s, trilinear_gsamples_s, exp_gops_s, dispatch_us;
+    paces paces;
 } fronts_device;
 
 typedef struct fronts {

@@ -196,7 +196,7 @@ int fronts_write(app *a, const cJSON *report, const char *path)
     cJSON *root = cJSON_CreateObject(), *scenes = cJSON_CreateArray();
     cJSON_AddStringToObject(root, "schema", fronts_schema);
     cJSON_AddNumberToObject(root, "version", FRONTS_VERSION);
-    static const char *const kept[] = {"tyndall", "date", "device", "ceilings"};
+    static const char *const kept[] = {"tyndall", "date", "device", "paces"};
     for (size_t i = 0; i < ARRAY_SIZE(kept); i++) {
         cJSON *item = cJSON_Duplicate(json_at(report, kept[i]), true);
         cJSON_AddItemToObject(root, kept[i], item ? item : cJSON_CreateNull());

@@ -26,6 +26,11 @@ cJSON *ceilings_json(const ceilings *on)
     (void)on;
     return cJSON_CreateNull();
 }
+cJSON *paces_json(const paces *p)
+{
+    (void)p;
+    return cJSON_CreateNull();
+}
 char *bench_picture(const bench_scene *scene, const char *slug)
 {
     (void)scene, (void)slug;

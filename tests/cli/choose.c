@@ -67,8 +67,11 @@ static int teardown(void **state)
 
 static choose_request ask(double max_error, double budget_ms)
 {
-    return (choose_request){
-        .max_error = max_error, .budget_ms = budget_ms, .width = 100, .height = 100, .slowness = 1};
+    return (choose_request){.max_error = max_error,
+                            .budget_ms = budget_ms,
+                            .width = 100,
+                            .height = 100,
+                            .slowness = {1, 1, 1}};
 }
 
 // In a stored scene the other one is far away: what is stored is what is predicted, and with so few scenes the
@@ -134,10 +137,17 @@ static void the_best_within_a_time(void **state)
     c = in_thin(&request);
     assert_string_equal(c.run->key, "pop");
     assert_near(c.ms, 10 + 2.5, 0.5);
-    request.slowness = 4;
+    request.method = "pop";
+    request.slowness = (paces){8, 2, 1}; // a solve takes eight times as long, a pixel twice
     c = in_thin(&request);
     assert_string_equal(c.run->key, "pop lattice.cells=8");
-    assert_near(c.ms, 4 * (1 + 2.5), 0.5);
+    assert_near(c.ms, 8 * 1 + 2 * 2.5, 0.5);
+    request.method = "path";
+    c = in_thin(&request);
+    const uint32_t samples = c.spp;
+    request.slowness.sample_ns = 2;
+    c = in_thin(&request);
+    assert_in_range(c.spp, samples / 2 - 1, samples / 2 + 1);
 }
 
 static void error_and_time(void **state)
@@ -265,7 +275,8 @@ static void from_a_report(void **state)
     static const char report[] =
         "{\"schema\": \"tyndall-report\", \"version\": 1, \"device\": {\"name\": \"d\"}, "
         "\"ceilings\": "
-        "{\"fma_gflops\": 10}, \"suite\": {\"name\": \"s\"}, \"scenes\": [{\"name\": \"thin\", "
+        "{\"fma_gflops\": 10}, \"paces\": {\"solve_ms\": 10, \"pixel_ns\": 20, \"sample_ns\": 30}, "
+        "\"suite\": {\"name\": \"s\"}, \"scenes\": [{\"name\": \"thin\", "
         "\"size\": [10, 20], \"regime\": " REGIME(
             "0.1") ", \"runs\": ["
                    "{\"method\": \"pop\", \"settings\": {\"lattice.cells\": 8}, \"failed\": null, "
@@ -301,7 +312,9 @@ static void from_a_report(void **state)
     assert_int_equal(fronts_write(&a, json, path), EXIT_DONE);
     assert_int_equal(fronts_open(&a, path, &f), EXIT_DONE);
     assert_true(f.num_scenes == 1 && f.scenes[0].num_runs == 4);
-    assert_near(f.device.fma_gflops, 10, 0);
+    assert_near(f.device.paces.solve_ms, 10, 0);
+    assert_near(f.device.paces.pixel_ns, 20, 0);
+    assert_near(f.device.paces.sample_ns, 30, 0);
     const fronts_run *run = f.scenes[0].runs;
     assert_string_equal(run[0].key, "pop lattice.cells=8");
     assert_near(run[0].error, 0.03, 1e-6);

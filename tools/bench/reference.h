@@ -4,6 +4,7 @@
 #include "ceilings.h"
 #include "machine.h"
 #include "metrics.h"
+#include "paces.h"
 #include "suite.h"
 #include <tyndall/io.h>
 #include <tyndall/offline.h>
@@ -17,6 +18,7 @@ typedef struct bench_machine {
     const char *name, *driver, *type; // as in <tyndall/device.h>
     uint64_t library;                 // library_hash
     ceilings ceilings;
+    paces paces; // 0: no fronts are written
 } bench_machine;
 
 extern const char *const bench_reference_channels[6];

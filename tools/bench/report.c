@@ -140,6 +140,8 @@ void bench_report_begin(app *a, bench_report *r, const bench_machine *on, const 
     cJSON_AddStringToObject(device, "driver", on->driver);
     cJSON_AddStringToObject(device, "type", on->type);
     cJSON_AddItemToObject(r->root, "ceilings", ceilings_json(&on->ceilings));
+    cJSON_AddItemToObject(r->root, "paces",
+                          on->paces.solve_ms > 0 ? paces_json(&on->paces) : cJSON_CreateNull());
     cJSON_AddItemToObject(r->root, "seconds", cJSON_CreateObject());
     cJSON_AddItemToObject(r->root, "scenes", cJSON_CreateArray());
     peers_unknown(a, suite, cJSON_AddArrayToObject(r->root, "peers_left_out"));

@@ -1,8 +1,7 @@
-// ceilings_cache.c -- the ceilings of a device, measured once a day.
-#include "ceilings_cache.h"
+// paces_cache.c -- how fast a device is, measured once a day.
 #include "cache.h"
+#include "paces.h"
 #include "stats.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -37,19 +36,13 @@ static char *path_of(tyn_device *device)
     for (size_t i = 0; i < ARRAY_SIZE(texts); i++) {
         hash = text_hash(texts[i], strlen(texts[i]), hash);
     }
-    char *name = text_format("ceilings-%016llx.json", (unsigned long long)hash);
+    char *name = text_format("paces-%016llx.json", (unsigned long long)hash);
     char *path = name ? cache_path(name) : NULL;
     free(name);
     return path;
 }
 
-static double figure(const cJSON *json, const char *name)
-{
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
-    return cJSON_IsNumber(item) ? item->valuedouble : NAN;
-}
-
-static bool load(const char *path, ceilings *c)
+static bool load(const char *path, paces *p)
 {
     struct stat status;
     void *data = NULL;
@@ -60,21 +53,19 @@ static bool load(const char *path, ceilings *c)
     }
     cJSON *json = cJSON_ParseWithLength(data, size);
     free(data);
-    *c = (ceilings){figure(json, "fma_gflops"), figure(json, "copy_gb_s"),
-                    figure(json, "trilinear_gsamples_s"), figure(json, "exp_gops_s"),
-                    figure(json, "dispatch_us")};
+    *p = paces_read(json);
     cJSON_Delete(json);
-    return c->fma_gflops > 0;
+    return p->solve_ms > 0;
 }
 
-int ceilings_known(app *a, tyn_device *device, ceilings *c)
+int paces_known(app *a, tyn_device *device, paces *p)
 {
     char *path = path_of(device);
     int code = EXIT_DONE;
-    if (!load(path, c)) {
+    if (!load(path, p)) {
         app_note(a, "measuring how fast this device is, once a day");
-        code = ceilings_measure(a, device, c);
-        cJSON *json = code == EXIT_DONE && path ? ceilings_json(c) : NULL;
+        code = paces_measure(a, device, p);
+        cJSON *json = code == EXIT_DONE && path ? paces_json(p) : NULL;
         char *text = json ? cJSON_Print(json) : NULL;
         if (text) { // without it they are measured again, and nothing else is lost
             tyn_file_write(path, text, strlen(text), NULL);
