@@ -1,5 +1,6 @@
 // lattice_lamps.c -- unscattered light of lamps and VPLs on the lattice.
 #include "lattice_lamps.h"
+#include "shaders/beams/radial_args.h"
 #include "shaders/lattice/lattice_args.h"
 #include "passes/lattice_lamps_tables.h"
 #include <math.h>
@@ -7,6 +8,12 @@
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)
 {
     return p->num_fine + (p->num_lamps > p->num_fine) + p->vpls;
+}
+
+// As many as there may be.
+static uint32_t num_lights(const tyn_lattice_lamps_params *p)
+{
+    return p->num_lamps + (p->vpls ? TYN_RADIAL_VPLS_MAX : 0);
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -29,6 +36,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
                     1);
     tyn_build_buffer(b, LATTICE_LAMPS_PORT_POWER,
                      sizeof(struct lattice_lamp_power) * groups * p->shape.channels);
+    tyn_build_buffer(b, LATTICE_LAMPS_PORT_LOSSES,
+                     sizeof(float) * 4 * num_lights(p) * p->shape.channels);
     return TYN_OK;
 }
 
@@ -69,6 +78,9 @@ static void record(tyn_recorder *r, const void *params)
         TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec);
         TYN_DISPATCH(r, .kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec);
     }
+    TYN_DISPATCH(r, .kernel = KERNEL_LOST,
+                 .cells = {num_lights(p) * LATTICE_SUN_GROUP, p->shape.channels, 1}, .args = &args,
+                 .spec = &p->mode);
     TYN_DISPATCH(r, .kernel = KERNEL_SUM,
                  .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
                  .args = &args, .spec = &p->mode);

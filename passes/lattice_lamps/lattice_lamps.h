@@ -27,6 +27,7 @@ typedef struct tyn_lattice_lamps_params {
         "unscattered fluence and flux of all lights, W/m^2; channels stacked along z"), \
     X(LATTICE_LAMPS, VPL_LIGHT, vpl_light, OUT, RGBA_3D, "unscattered fluence and flux of VPLs, W/m^2"), \
     X(LATTICE_LAMPS, POWER, power, OUT, BUFFER, "struct lattice_lamp_power per group of lights and channel"), \
+    X(LATTICE_LAMPS, LOSSES, losses, SCRATCH, BUFFER, "four floats per light and channel: entering, emitted, lost, 0"), \
     X(LATTICE_LAMPS, LIT, lit, SCRATCH, RGBA_3D, "fluence and flux of each group of lights, before scaling"), \
     X(LATTICE_LAMPS, UNSHADOWED, unshadowed, SCRATCH, IMAGE_3D, \
         "fluence without shadows, before scaling", .format = VK_FORMAT_R32_SFLOAT)

@@ -1,8 +1,6 @@
 // lattice_lamps_sum.comp -- the factor that makes the cells lose what the beams of local lights lose.
 //
-// One workgroup per group of lights and channel. What a light within the box loses is its power times the mean
-// of 1 - e^-tau' over its directions; of one outside the integral over the faces where its light leaves
-// the box, both as if nothing stood before the lights: what surfaces keep from the cells is left out after
+// One workgroup per group of lights and channel. What surfaces keep from the cells is left out after
 // scaling. Sums have a fixed order: every thread its own terms, then pairwise.
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
@@ -12,57 +10,17 @@
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/radial.glsl"
 #include "shaders/lattice/lattice.glsl"
-#include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
 #define WORKGROUP_SIZE LATTICE_SUN_GROUP
-#define WORKGROUP_SUM vec2
+#define WORKGROUP_SUM vec4
 #include "shaders/common/workgroup.glsl"
 TYN_ARGS(lattice_lamps_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D unshadowed;
-TYN_WRITE(7, power, lattice_lamp_power power[]);
+TYN_READ(7, losses, vec4 losses[]); // of lattice_lamps_lost.comp
+TYN_WRITE(8, power, lattice_lamp_power power[]);
 #include "lattice_lamps.glsl"
-
-float lost_at(uint n, vec3 away, float r, uint ch)
-{
-    beam_tau tau = radial_tau(radial_place_of(n, away, r));
-    float t = tau.a[ch] + tau.p[ch];
-    return t < 0.01 ? t * (1.0 - 0.5 * t * (1.0 - t / 3.0)) : 1.0 - exp(-t);
-}
-
-// Shares of one direction in the light's power and in what is lost of it.
-vec2 of_direction(uint n, uint i, uint side, uint ch)
-{
-    vec3 m = octahedral_point(octahedral_texel(ivec2(i % side, i / side), int(side)));
-    vec3 r0 = radials[n].to_map[0], r1 = radials[n].to_map[1], r2 = radials[n].to_map[2];
-    vec3 q = r0 * (m.x / dot(r0, r0)) + r1 * (m.y / dot(r1, r1)) + r2 * (m.z / dot(r2, r2));
-    float size = length(q), solid_angle = 1.0 / (size * size * size);
-    vec3 d = q / size, origin = radials[n].light.position;
-    float share = radial_share(n, d, 1.0) * solid_angle;
-    if (share <= 0.0) {
-        return vec2(0.0);
-    }
-    vec3 way = mix(medium.extent - origin, -origin, lessThan(d, vec3(0.0))) /
-               mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
-    float r = max(min(way.x, min(way.y, way.z)), 0.0);
-    return share * vec2(1.0, lost_at(n, r * d, r, ch));
-}
-
-// Power through the i-th piece of the faces, and what was lost of it before, per W/sr.
-vec2 of_face(uint n, uint i, uint side, uint ch)
-{
-    uint axis = i / (2u * side * side), u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
-    vec3 p;
-    p[axis] = (i / (side * side) & 1u) == 0u ? 0.0 : medium.extent[axis];
-    p[u] = (float(i % side) + 0.5) / float(side) * medium.extent[u];
-    p[v] = (float(i / side % side) + 0.5) / float(side) * medium.extent[v];
-    vec3 away = p - radials[n].light.position;
-    float r = length(away), cosine = (p[axis] > 0.0 ? away[axis] : -away[axis]) / max(r, 1e-20);
-    float area = medium.extent[u] * medium.extent[v] / float(side * side);
-    float share = cosine > 0.0 ? radial_share(n, away, r) * cosine * area / (r * r) : 0.0;
-    return share > 0.0 ? share * vec2(1.0, lost_at(n, away, r, ch)) : vec2(0.0);
-}
 
 float collided_in_cells(uint group, uint ch, float volume)
 {
@@ -81,31 +39,17 @@ void main()
 {
     uint group = gl_WorkGroupID.x, ch = gl_WorkGroupID.y, me = gl_LocalInvocationIndex;
     uvec2 range = lattice_lamps_of(group);
-    float entering = 0.0, emitted = 0.0, lost = 0.0;
-    for (uint n = range.x; n < range.y; n++) {
-        bool inside = radials[n].inside != 0u;
-        uint side = n < args.num_fine ? 64u : n < args.num_lamps ? 32u : 16u;
-        uint count = side * side * (inside ? 1u : 6u);
-        vec2 sum = vec2(0.0);
-        for (uint i = me; i < count; i += LATTICE_SUN_GROUP) {
-            sum += inside ? of_direction(n, i, side, ch) : of_face(n, i, side, ch);
-        }
-        vec2 total = workgroup_total(sum);
-        if (inside) { // the power is known
-            float exact = light_lobe_integral(radials[n].light);
-            total *= total.x > 0.0 ? exact / total.x : 0.0;
-        }
-        float e = lattice_channel(radials[n].light.color, args.channels, ch, args.tint);
-        entering += inside ? 0.0 : e * total.x;
-        emitted += inside ? e * total.x : 0.0;
-        lost += e * total.y;
+    vec4 sum = vec4(0.0); // entering, emitted, lost; collided
+    for (uint n = range.x + me; n < range.y; n += LATTICE_SUN_GROUP) {
+        sum += losses[n * args.channels + ch];
     }
     float dx = lattice_box_of(medium.extent, ivec3(args.dims)).dx;
-    float collided = workgroup_total(vec2(collided_in_cells(group, ch, dx * dx * dx), 0.0)).x;
+    sum.w = collided_in_cells(group, ch, dx * dx * dx);
+    sum = workgroup_total(sum);
     if (me == 0u) {
         // Close to 1 where the pieces of the cells resolve the light; large where it is lost within a
         // fraction of one, or where the depth of the cells is bounded.
-        float scale = collided > 0.0 ? min(lost / collided, 1e6) : 1.0;
-        power[group * args.channels + ch] = lattice_lamp_power(entering, emitted, lost, scale);
+        float scale = sum.w > 0.0 ? min(sum.z / sum.w, 1e6) : 1.0;
+        power[group * args.channels + ch] = lattice_lamp_power(sum.x, sum.y, sum.z, scale);
     }
 }
