@@ -72,9 +72,9 @@ static void record(tyn_recorder *r, const void *params)
         const uint32_t spec[5] = {p->mode, p->shape.channels,
                                   tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES), walls,
                                   tyn_rec_has(r, LATTICE_LAMPS_PORT_ROOMS)};
-        // Workgroups are cubes of 4^3 blocks.
-        const tyn_extent blocks = {(dims.x + 7) / 8 * 8, (dims.y + 7) / 8 * 4,
-                                   (dims.z + 7) / 8 * 2};
+        // Workgroups are cubes of 4^3 cells.
+        const tyn_extent blocks = {(dims.x + 3) / 4 * 8, (dims.y + 3) / 4 * LATTICE_VPL_SLICES,
+                                   (dims.z + 3) / 4};
         TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec);
         TYN_DISPATCH(r, .kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec);
     }

@@ -218,8 +218,7 @@ static const limit of_all = {"", 65536, 0, 8, NULL, false};
 static limit known[] = {
     {"raymarch_grey", 212000, 0, 4,
      "lamps, walls, the sparse march and what is behind the medium in one kernel", false},
-    {"lattice_lamps_vpls", 65536, 90, 4, "four shadow rays at once, each with its place in a beam",
-     false},
+    {"lattice_lamps_vpls", 65536, 0, 4, "moments of eight cells at once, in three channels", false},
     {"shade_surface", 204000, 0, 8, "all lights of a surface, of whole pixels and of pieces",
      false},
     {"shade_alone", 108500, 0, 8, "as shade_surface, without a list", false},
