@@ -6,8 +6,8 @@ tool=$1 helpers=$2 scenes=$3 source=$4
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
+export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/tyndall-tests}" # of all tests (tests/meson.build)
 export XDG_CACHE_HOME="$work/cache"
-export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$helpers/driver-cache}" # of all tests (tests/meson.build)
 failures=0
 
 fail() {

@@ -23,6 +23,7 @@ from screen import HEIGHT, WIDTH, Screen, difference, read_png, write_png
 TYNDALL, SCENES, HELPERS = map(os.path.abspath, sys.argv[1:4])
 PICTURES = sys.argv[4] if len(sys.argv) > 4 else None
 PLUGIN = os.environ.get("VIEW_PLUGIN")
+DRIVER_CACHE = os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "tyndall-tests") # of all tests (tests/meson.build)
 failures = []
 
 
@@ -751,7 +752,7 @@ def run(test, perturb):
     before = len(failures)
     os.environ["MALLOC_PERTURB_"] = PERTURB if perturb else "0"
     with tempfile.TemporaryDirectory() as work:
-        os.environ.setdefault("MESA_SHADER_CACHE_DIR", os.path.join(HELPERS, "driver-cache")) # of all tests
+        os.environ.setdefault("MESA_SHADER_CACHE_DIR", DRIVER_CACHE)
         os.environ["XDG_CACHE_HOME"] = os.environ.get("VIEW_CACHE", os.path.join(work, "cache"))
         screen = Screen(work)
         screen.viewers = []
