@@ -113,6 +113,18 @@ static tyn_balance pop_balance(tyn_device *dev, const tyn_scene *scene)
     return balance;
 }
 
+// Of a scene of the list: two tests ask for it.
+static tyn_balance sample_balance(tyn_device *dev, const tyn_scene *scene, int which)
+{
+    static tyn_balance found[NUM_SCENES];
+    static bool is_found[NUM_SCENES];
+    if (!is_found[which]) {
+        found[which] = pop_balance(dev, scene);
+        is_found[which] = true;
+    }
+    return found[which];
+}
+
 static bool near_balance(const struct sample_scene *k, const char *name, double imbalance)
 {
     const bool own = k->imbalance > 0;
@@ -152,7 +164,7 @@ static void pop(void **state)
     bool good = true;
     for (int i = 0; i < NUM_SCENES; i++) {
         tyn_scene *scene = load(t, &scenes[i]);
-        const tyn_balance b = pop_balance(t->dev, scene);
+        const tyn_balance b = sample_balance(t->dev, scene, i);
         char name[32];
         snprintf(name, sizeof name, "%s%s", scenes[i].name, scenes[i].albedo > 0 ? ", grey" : "");
         print_message("%-15s imbalance %.2f %%\n", name, 100 * worst_of(b.imbalance));
@@ -249,7 +261,7 @@ static void path(void **state)
         good = todo_if(scenes[i].noisy, worst_of(se) <= 0.01, scenes[i].noisy,
                        "%s: standard error within 1 %%", scenes[i].name) &&
                good;
-        const tyn_balance b = pop_balance(t->dev, scene);
+        const tyn_balance b = sample_balance(t->dev, scene, i);
         add_ends(&of_pop, &b, 1);
         good =
             todo_if(scenes[i].apart, shares_apart(&ends, &of_pop) <= most_apart + 2 * worst_of(se),
