@@ -91,23 +91,23 @@ static void sealed(void **state)
             picture_free(&p_inside);
         }
         tyn_offline_destroy(&off);
-        view_perspective(&view, (float[]){0.2f, 0.8f, 2.5f}, (float[]){0, 0, 0}, 0.5f, 24);
-        picture_render(&white, t->dev, "pop", &scene, &view, "lattice.sweeps=12", 0);
-        for (int i = 0; i < 24 * 24 * 3; i++) {
-            wrong = maximum(wrong, fabs(white.rgb[i] - 1.0));
-            mean_wrong += (white.rgb[i] - 1.0) / (24 * 24 * 3);
-        }
-        printf("    brightest of %d pixels inside %.1e; outside off by %.1e, mean %.1e\n",
-               3 * 40 * 40, brightest, wrong, mean_wrong);
+        printf("    brightest of %d pixels inside %.1e\n", 3 * 40 * 40, brightest);
         assert_true(brightest < 1e-4 * outside / dark);
         if (rho == 1 && k < 4) {
+            view_perspective(&view, (float[]){0.2f, 0.8f, 2.5f}, (float[]){0, 0, 0}, 0.5f, 24);
+            picture_render(&white, t->dev, "pop", &scene, &view, "lattice.sweeps=12", 0);
+            for (int i = 0; i < 24 * 24 * 3; i++) {
+                wrong = maximum(wrong, fabs(white.rgb[i] - 1.0));
+                mean_wrong += (white.rgb[i] - 1.0) / (24 * 24 * 3);
+            }
+            picture_free(&white);
+            printf("    outside off by %.1e, mean %.1e\n", wrong, mean_wrong);
             assert_true(within(wrong, k == 1 ? 0.08 : 0.005, NULL, "white box %d, worst pixel", k));
             assert_true(
                 within(fabs(mean_wrong), k == 1 ? 2e-4 : 0.002, NULL, "white box %d, mean", k));
             assert_true(todo_if(true, wrong < 5e-5 && fabs(mean_wrong) < 1e-5, white_boxes,
                                 "sealed: a white box is not to be seen"));
         }
-        picture_free(&white);
         tyn_scene_finish(&scene);
     }
 }
