@@ -20,18 +20,19 @@ beam: *                -- no reason is said
 wrong = 0
 
 
-def check(what, log, arguments, code, last, inside=()):
+def check(what, log, arguments, code, last, inside=(), apart=1, outside=()):
     global wrong
     with tempfile.TemporaryDirectory() as folder:
         os.makedirs(f"{folder}/build/meson-logs")
         with open(f"{folder}/build/meson-logs/testlog.json", "w", encoding="utf-8") as file:
-            for name, result, out, err in log:
-                file.write(json.dumps({"name": name, "result": result, "stdout": out, "stderr": err}) + "\n")
+            for at, (name, result, out, err) in enumerate(log):
+                file.write(json.dumps({"name": name, "result": result, "stdout": out, "stderr": err, "starttime": 1000 + at * apart,
+                                       "duration": 10 + at}) + "\n")
         with open(f"{folder}/allowed", "w", encoding="utf-8") as file:
             file.write(ALLOWED)
         run = subprocess.run([os.path.abspath(sys.argv[1]), *arguments, "build"], cwd=folder, capture_output=True, text=True)
     lines = run.stdout.splitlines()
-    if run.returncode != code or lines[-2:] != last or any(line not in lines for line in inside):
+    if run.returncode != code or lines[-2:] != last or any(line not in lines for line in inside) or any(line in lines for line in outside):
         print(f"FAILED: {what}: exit {run.returncode}\n{run.stdout}{run.stderr}")
         wrong += 1
 
@@ -49,6 +50,9 @@ check("another reason may not", [("page", "SKIP", "skipped: the page in a browse
 check("a failure", LOG + [("x", "TIMEOUT", "", "")], [], 1, ["2 known failures", "3 passed, 1 failed, 3 skipped"],
       ["failed: x (TIMEOUT)"])
 check("a step that broke", LOG, ["--failed-steps", "2"], 1, ["2 known failures", "3 passed, 2 failed, 3 skipped"])
+LONG = "build: the tests took 20.0 minutes, more than 20: hg 14 s, beam 13 s, page 12 s, pop_walls 11 s, half 10 s"
+check("tests that take long", LOG, [], 0, ["2 known failures", "3 passed, 0 failed, 3 skipped"], [LONG], apart=297)
+check("tests that do not", LOG, [], 0, ["2 known failures", "3 passed, 0 failed, 3 skipped"], apart=296, outside=[LONG])
 check("no test at all", [], [], 1, ["0 known failures", "0 passed, 0 failed, 0 skipped"])
 print("all right" if not wrong else f"{wrong} failed")
 sys.exit(1 if wrong else 0)
