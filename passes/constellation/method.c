@@ -88,7 +88,7 @@ static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_v
     tyn_add_radials(g, job, &own);
     tyn_add_surfaces(g, job, &surfaces);
     view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
+    view->seen = surfaces.seen;
 }
 
 static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
@@ -105,7 +105,7 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
         [CONSTELLATION_PORT_ENV_MAP] = job->refs.env_map,
         [CONSTELLATION_PORT_HOST_DEPTH] = job->refs.depth,
         [CONSTELLATION_PORT_SURFACE] = view->surface,
-        [CONSTELLATION_PORT_DISTANCES] = view->distances,
+        [CONSTELLATION_PORT_SEEN] = view->seen,
     };
     if (params.mask) {
         refs[CONSTELLATION_PORT_MASK] =

@@ -40,12 +40,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_gbuffer_params *p = params;
     const tyn_extent size = {p->size[0] * (uint32_t)p->samples, p->size[1] * (uint32_t)p->samples,
                              1};
-    const uint32_t texels = (uint32_t)(p->samples * p->samples + 3) / 4; // gbuffer_texels
-    tyn_build_image(b, GBUFFER_PORT_DISTANCES, size, 1);
-    tyn_build_image(b, GBUFFER_PORT_FACING, (tyn_extent){p->size[0], p->size[1], 1}, 1);
-    tyn_build_image(b, GBUFFER_PORT_COLOURS, (tyn_extent){p->size[0] * texels, p->size[1], 1}, 1);
-    tyn_build_buffer(b, GBUFFER_PORT_EDGE_COUNT, sizeof(struct gbuffer_edge_count));
-    tyn_build_buffer(b, GBUFFER_PORT_EDGES, sizeof(uint32_t) * p->size[0] * p->size[1]);
     tyn_build_buffer(b, GBUFFER_PORT_MIXED_COUNT, sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, GBUFFER_PORT_MIXED, sizeof(uint32_t) * p->size[0] * p->size[1]);
     tyn_build_image(b, GBUFFER_PORT_SEEN, size, 1);
@@ -56,9 +50,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gbuffer_params *p = params;
-    const uint32_t spec[3] = {p->textured, (uint32_t)p->samples, p->row ? p->row : GBUFFER_ROW};
+    const uint32_t spec[2] = {(uint32_t)p->samples, p->row ? p->row : GBUFFER_ROW};
     tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW, .vertices = 3 * p->num_triangles});
-    tyn_rec_fill(r, GBUFFER_PORT_EDGE_COUNT, 0);
     tyn_rec_fill(r, GBUFFER_PORT_MIXED_COUNT, 0);
     tyn_dispatch d = {.kernel = KERNEL_RESOLVE, .cells = {p->size[0], p->size[1], 1}, .spec = spec};
     tyn_rec_dispatch(r, &d);
@@ -76,6 +69,6 @@ const tyn_pass_desc tyn_pass_gbuffer = {
     TYN_PASS_TABLES(tyn_gbuffer_params),
     .of_pixels = true,
     TYN_SETTINGS(params_table),
-    .debug_port = GBUFFER_PORT_DISTANCES,
-    .debug_meaning = "distance of what the camera sees",
+    .debug_port = GBUFFER_PORT_SEEN,
+    .debug_meaning = "triangles that the camera sees",
 };

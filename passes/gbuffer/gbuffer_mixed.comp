@@ -1,73 +1,70 @@
 // gbuffer_mixed.comp -- pixels whose samples see several triangles, or one beside nothing. They may make up one piece
-// of surface; else the pixel is an edge.
-#include "gbuffer_sample.glsl"
+// of surface; else the pixel shows several.
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-TYN_UPDATE(14, edge_count, gbuffer_edge_count edge_count);
-TYN_WRITE(15, edges, uint edges[]);
+layout(constant_id = 0) const int samples = 2; // along each side of a pixel
+TYN_UNIFORM(0, camera, camera_block camera);
+#define GEOMETRY_AT 1
+#include "shaders/surfaces/gbuffer_triangle.glsl"
+layout(binding = 5, r32ui) uniform uimage2D seen;
+TYN_READ(6, mixed_count, gbuffer_edge_count mixed_count);
+TYN_READ(7, mixed, uint mixed[]);
+
+uint seen_by(const gbuffer_pixel p, int k)
+{
+    return imageLoad(seen, gbuffer_texel(p, k)).r;
+}
 
 void main()
 {
     uint n = gbuffer_edge();
-    if (n == 0u) {
-        edge_count.groups.z = 1u;
-    }
     if (n >= mixed_count.count) {
         return;
     }
-    ivec2 pixel = ivec2(mixed[n] & 0xffffu, mixed[n] >> 16), corner = samples * pixel;
-    const int count = samples * samples, middle = (samples / 2) * (samples + 1);
-    bool whole = true;
-    gbuffer_point first;
-    gbuffer_colours colours = GBUFFER_BLACK;
-    gbuffer_facing nearest = gbuffer_facing(GBUFFER_SEVERAL, 0, vec3(0.0), vec3(0.0));
-    int nearest_rank = count;
-    vec3 at = vec3(0.0), normal = vec3(0.0);
+    gbuffer_pixel p = gbuffer_pixel(ivec2(mixed[n] & 0xffffu, mixed[n] >> 16), samples, 0u);
+    const int count = samples * samples;
+    uint shown = 0u; // samples: bits
     for (int k = 0; k < count; k++) {
-        ivec2 texel = texel_of(corner, k);
-        uint index = imageLoad(seen, texel).r;
-        if (index == 0u) {
-            whole = false;
-            imageStore(distances_image, texel, vec4(0.0));
-            continue;
-        }
-        vec2 place = vec2(texel) + 0.5;
-        camera_ray ray = gbuffer_ray(place);
-        gbuffer_point p = gbuffer_point_of(gbuffer_triangle_of(index - 1u), place, ray);
-        imageStore(distances_image, texel, vec4(p.distance));
-        vec3 there = ray.origin + p.distance * ray.direction;
-        if (k == 0) {
-            first = p;
-            at = there;
-        }
-        int rank = (k - middle + count) % count; // from the middle on
-        if (rank < nearest_rank) {
-            nearest_rank = rank;
-            nearest = gbuffer_facing(GBUFFER_SEVERAL, k, p.normal, p.facet);
-        }
-        whole = whole && gbuffer_same(first, at, p.facet, there, p.distance);
-        normal += p.normal;
-        colours = gbuffer_add(colours, 1.0, p.colours);
+        shown |= seen_by(p, k) != 0u ? 1u << k : 0u;
     }
-    if (whole) {
-        first.normal = normalize(normal);
-        first.colours = gbuffer_add(GBUFFER_BLACK, 1.0 / float(count), colours);
-        store_whole(pixel, first);
-    } else {
-        imageStore(facing_image, pixel, gbuffer_facing_pack(nearest));
-        int texels = gbuffer_texels(samples);
-        for (int t = 0; t < texels; t++) {
-            uvec4 indices = uvec4(0u);
-            for (int k = 0; k < min(4, count - 4 * t); k++) {
-                indices[k] = imageLoad(seen, texel_of(corner, 4 * t + k)).r;
+    uint second = 0u;
+    int pieces = 0;
+    bool apart = false; // samples of one piece are at several distances, as those of one step and the next, seen edge-on
+    float nearest = 1e38, farthest = 0.0;
+    for (uint left = shown; left != 0u; pieces++) {
+        gbuffer_point first;
+        uint members = 0u;
+        for (uint some = left; some != 0u; some &= some - 1u) {
+            int k = findLSB(some);
+            gbuffer_point s = gbuffer_sample(p, k, seen_by(p, k));
+            if (members == 0u) {
+                first = s;
             }
-            imageStore(colours_image, ivec2(pixel.x * texels + t, pixel.y), indices);
+            if (members == 0u || gbuffer_same(first, s)) {
+                members |= some & -some;
+                apart = apart || max(first.distance, s.distance) > 1.05 * min(first.distance, s.distance);
+            }
+            nearest = min(nearest, s.distance);
+            farthest = max(farthest, s.distance);
         }
-        uint m = atomicAdd(edge_count.count, 1u);
-        edges[m] = uint(pixel.y) << 16 | uint(pixel.x);
-        uvec2 groups = gbuffer_edge_groups(m, row);
-        atomicMax(edge_count.groups.x, groups.x);
-        atomicMax(edge_count.groups.y, groups.y);
+        left &= ~members;
+        second = pieces == 1 ? members : second;
+    }
+    for (int k = 0; k < count; k++) {
+        if ((pieces > 2 || apart) && (shown >> k & 1u) != 0u) { // what is near, and what is far
+            bool far = gbuffer_sample(p, k, seen_by(p, k)).distance > sqrt(nearest) * sqrt(farthest);
+            second = second & ~(1u << k) | (far ? 1u << k : 0u);
+        }
+    }
+    bool several = pieces > 1 || shown != gbuffer_all(p);
+    for (int k = 0; k < count; k++) {
+        uint bits = k > 0 ? 0u : GBUFFER_MIXED | (several ? GBUFFER_SEVERAL : 0u);
+        bits |= (second >> k & 1u) != 0u ? GBUFFER_SECOND : 0u;
+        if (bits != 0u) {
+            imageStore(seen, gbuffer_texel(p, k), uvec4(seen_by(p, k) | bits));
+        }
     }
 }

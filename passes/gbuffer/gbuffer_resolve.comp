@@ -1,8 +1,19 @@
-// gbuffer_resolve.comp -- what pixels show whose samples all see one triangle, or none. The others are listed for
-// gbuffer_mixed.comp: on a device whose threads run together they would keep their neighbours waiting.
-#include "gbuffer_sample.glsl"
+// gbuffer_resolve.comp -- lists pixels whose samples see several triangles, or one beside nothing, for gbuffer_mixed.comp: on a
+// device whose threads run together they would keep their neighbours waiting.
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const int samples = 2; // along each side of a pixel
+layout(constant_id = 1) const uint row = GBUFFER_ROW;
+TYN_UNIFORM(0, camera, camera_block camera);
+layout(binding = 1, r32ui) uniform readonly uimage2D seen;
+TYN_UPDATE(2, mixed_count, gbuffer_edge_count mixed_count);
+layout(binding = 3, scalar) writeonly buffer mixed_buffer
+{
+    uint mixed[]; // x | y << 16
+};
 
 void main()
 {
@@ -14,28 +25,7 @@ void main()
     uint index = imageLoad(seen, corner).r;
     bool same = true;
     for (int k = 1; k < samples * samples; k++) {
-        same = same && imageLoad(seen, texel_of(corner, k)).r == index;
-    }
-    if (same && index == 0u) {
-        for (int k = 0; k < samples * samples; k++) {
-            imageStore(distances_image, texel_of(corner, k), vec4(0.0));
-        }
-        imageStore(facing_image, pixel, uvec4(0u, 0u, GBUFFER_NONE, 0u));
-    }
-    if (same && index != 0u) {
-        gbuffer_triangle triangle = gbuffer_triangle_of(index - 1u);
-        vec2 middle = vec2(corner) + 0.5 * float(samples);
-        gbuffer_point p = gbuffer_point_of(triangle, middle, gbuffer_ray(middle));
-        vec3 albedo = vec3(0.0), direction;
-        for (int k = 0; k < samples * samples; k++) {
-            ivec2 texel = texel_of(corner, k);
-            vec2 at = vec2(texel) + 0.5;
-            vec4 w = gbuffer_meet(triangle, gbuffer_ray(at), direction);
-            albedo += textured != 0u ? gbuffer_albedo_at(triangle, at, w.xyz) : vec3(0.0);
-            imageStore(distances_image, texel, vec4(w.w));
-        }
-        p.colours.albedo = textured != 0u ? albedo / float(samples * samples) : p.colours.albedo;
-        store_whole(pixel, p);
+        same = same && imageLoad(seen, corner + ivec2(k % samples, k / samples)).r == index;
     }
     if (!same) {
         uint n = atomicAdd(mixed_count.count, 1u);

@@ -211,7 +211,7 @@ static void add_surfaces(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     tyn_view_inputs surfaces = {.sources = s, .field = solved};
     tyn_add_surfaces(g, job, &surfaces);
     view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
+    view->seen = surfaces.seen;
 }
 
 static void warn_of_limits(const tyn_job *job, bool multiple)

@@ -13,8 +13,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_guides_params *p = params;
-    const uint32_t spec[2] = {p->textured, (uint32_t)p->samples};
-    if (tyn_rec_has(r, GUIDES_PORT_FACING)) {
+    const uint32_t spec[1] = {p->textured};
+    if (tyn_rec_has(r, GUIDES_PORT_SEEN)) {
         TYN_DISPATCH(r, .cells = {p->size[0], p->size[1], 1}, .spec = spec);
     } else {
         tyn_rec_clear(r, GUIDES_PORT_ALBEDO);

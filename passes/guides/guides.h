@@ -5,7 +5,6 @@
 
 typedef struct tyn_guides_params {
     uint32_t size[2];  // of the picture, pixels
-    int32_t samples;   // of the G-buffer, along each side of a pixel
     uint32_t textured; // 1: materials may have textures; else none is looked at
 } tyn_guides_params;
 

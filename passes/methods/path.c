@@ -320,7 +320,7 @@ static void add_distances(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     tyn_connect(refs, PATH_DISTANCE_PORT_SURFACES, job->refs.geometry);
     tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
     in->surface = refs[PATH_DISTANCE_PORT_RADIANCE];
-    in->distances = refs[PATH_DISTANCE_PORT_DISTANCES];
+    in->seen = refs[PATH_DISTANCE_PORT_SEEN];
 }
 
 // Depths have no noise to take away: the ray march finds them, and does nothing else here.

@@ -6,7 +6,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_distance_params *p = params;
     tyn_build_image(b, PATH_DISTANCE_PORT_RADIANCE, (tyn_extent){p->width, p->height, 1}, 1);
-    tyn_build_image(b, PATH_DISTANCE_PORT_DISTANCES, (tyn_extent){p->width, p->height, 1}, 1);
+    tyn_build_image(b, PATH_DISTANCE_PORT_SEEN, (tyn_extent){p->width, p->height, 1}, 1);
     return TYN_OK;
 }
 
@@ -20,6 +20,6 @@ const tyn_pass_desc tyn_pass_path_distance = {
     .name = "path_distance",
     .summary = "distances to the surfaces that the camera sees",
     TYN_PASS_TABLES(tyn_path_distance_params),
-    .debug_port = PATH_DISTANCE_PORT_DISTANCES,
+    .debug_port = PATH_DISTANCE_PORT_SEEN,
     .debug_meaning = "distance to the first surface",
 };

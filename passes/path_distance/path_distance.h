@@ -11,8 +11,7 @@ typedef struct tyn_path_distance_params {
     X(PATH_DISTANCE, CAMERA, camera, IN, BUFFER, "struct camera_block: rays of the pixels"), \
     TYN_GEOMETRY(X, PATH_DISTANCE), \
     X(PATH_DISTANCE, RADIANCE, radiance, OUT, IMAGE_2D, \
-        "none: surfaces as the ray march takes them, in the dark", .format = VK_FORMAT_R32G32_UINT), \
-    X(PATH_DISTANCE, DISTANCES, distances, OUT, IMAGE_2D, \
-        "along the ray to the first surface, m; 0: none", .format = VK_FORMAT_R32_SFLOAT)
+        "piece_light.glsl: surfaces as the ray march takes them, in the dark", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(PATH_DISTANCE, SEEN, seen, OUT, IMAGE_2D, "gbuffer.glsl: the first surface", .format = VK_FORMAT_R32_UINT)
 // clang-format on
 TYN_PASS(PATH_DISTANCE, path_distance);

@@ -73,7 +73,7 @@ static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, const 
         .sources = &s, .field = beyond ? &no_field : view->field, .no_sky_on_surfaces = true};
     tyn_add_surfaces(g, job, &surfaces);
     view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
+    view->seen = surfaces.seen;
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)

@@ -1,16 +1,16 @@
 // raymarch_background.comp -- pixels in which no medium can be seen.
 #include "shaders/common/camera.glsl"
+TYN_UNIFORM(0, camera, camera_block camera);
 #include "shaders/march/background.glsl"
 #include "shaders/march/host_depth.glsl"
 #define SURFACE_RADIANCE 9
-#define SURFACE_DISTANCES 10
+#define GBUFFER_AT 10
 #include "shaders/march/surface_samples.glsl"
 #include "raymarch_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 2) const uint raymarch_features = 0u;
-TYN_UNIFORM(0, camera, camera_block camera);
 TYN_UNIFORM(1, environment, env_block environment);
 layout(binding = 2) uniform sampler2D env_map_wrapped;
 layout(binding = 3) uniform sampler2D host_depth_tex;
@@ -41,7 +41,7 @@ void main()
     vec4 radiance = vec4(0.0);
     float open = surface == TYN_INFINITY ? 1.0 : 0.0; // share in which the environment is seen
     if (has(RAYMARCH_SURFACE)) {
-        surface_samples samples = surface_samples_of(camera, pixel);
+        surface_samples samples = surface_samples_of(pixel);
         if (has(RAYMARCH_SURFACE_SEEN) && samples.mean.a < surface) {
             radiance = vec4(samples.mean.rgb, samples.covered);
         }

@@ -34,7 +34,7 @@ layout(binding = 23, rgba32f) uniform writeonly image2D multiple_image;
 TYN_UPDATE(24, counters, counters_block counters);
 layout(binding = 25) uniform sampler3D glow_wrapped;
 #define SURFACE_RADIANCE 26
-#define SURFACE_DISTANCES 27
+#define GBUFFER_AT 27
 #define WALLS_AT 28
 #define LATTICE_ROOMS 30
 #define SHADOWS_AT 31

@@ -139,7 +139,7 @@ pixel_light pixel_light_none()
 surface_group first_surface(ivec2 pixel, bool one_piece)
 {
     if (raymarch_has(RAYMARCH_SURFACE)) {
-        return surface_group_from(camera, pixel, ~0u, one_piece);
+        return surface_group_from(pixel, ~0u, one_piece);
     }
     return surface_group(vec4(vec3(0.0), TYN_INFINITY), 1.0, 0u, vec2(0.5));
 }

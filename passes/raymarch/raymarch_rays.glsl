@@ -51,7 +51,7 @@ void add_ray(inout pixel_light sum, const march_target target, vec2 where, float
             break;
         }
         if (left > 1e-3) {
-            group = surface_group_from(camera, target.pixel, group.left, true);
+            group = surface_group_from(target.pixel, group.left, true);
         }
     }
     sum.half_distance = min(sum.half_distance, start + state.half_distance);

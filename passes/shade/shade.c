@@ -49,7 +49,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent blocks = vpls || step > 1 ? blocks_of(p->size, step) : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
     const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
-    tyn_build_image(b, PORT(SURFACE_RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
+    tyn_build_image(b, PORT(SURFACE_RADIANCE), (tyn_extent){p->size[0], p->size[1], 1}, 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
     const uint32_t slices = cells.z / (p->one_channel ? 1 : 3);
@@ -64,9 +64,12 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(PART_ROWS), blocks, 1);
+    const uint64_t pixels = (uint64_t)p->size[0] * p->size[1];
+    tyn_build_buffer(b, PORT(EDGE_COUNT), sizeof(struct gbuffer_edge_count));
+    tyn_build_buffer(b, PORT(EDGES), 4 * (p->several ? pixels : 1));
     const bool alone = vpls || step > 1;
     tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
-    tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? (uint64_t)p->size[0] * p->size[1] : 1));
+    tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? pixels : 1));
     return TYN_OK;
 }
 
@@ -100,13 +103,12 @@ static void record(tyn_recorder *r, const void *data)
     features |= p->textured ? SHADE_TEXTURED : 0;
     const uint32_t rooms = tyn_rec_has(r, PORT(ROOMS));
     features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
-    const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
     const uint32_t step = step_of(p, shared || tyn_rec_has(r, PORT(MOMENTS)));
     const tyn_extent blocks = blocks_of(p->size, step), of_whole = blocks_of(whole_of(p), step);
     const uint32_t shorter = of_whole.x < of_whole.y ? of_whole.x : of_whole.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
-    uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
+    uint32_t spec[5] = {p->mode, features, p->num_suns, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
@@ -150,6 +152,7 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &d);
     }
     tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
+    tyn_rec_fill(r, PORT(EDGE_COUNT), 0);
     // Surfaces look up light of VPLs, or all smooth light.
     const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(PART_ROWS) : PORT(PART)}};
     uint8_t bound[2][TYN_MAX_BINDINGS];
@@ -157,9 +160,9 @@ static void record(tyn_recorder *r, const void *data)
     d.kernel = KERNEL_SURFACE;
     d.cells = pixels;
     d.ports = tyn_ports_exchanged(&kernels[KERNEL_SURFACE], looked_up, 1, bound[0]);
-    spec[1] = features | (p->parted || samples == 1 ? SHADE_PIXELS : both);
+    spec[1] = features | (p->parted || !p->several ? SHADE_PIXELS : both);
     tyn_rec_dispatch(r, &d);
-    if (samples > 1) {
+    if (p->several) {
         spec[1] = features | (p->parted ? SHADE_EDGES : both);
         args.listed = 1;
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);

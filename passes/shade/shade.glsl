@@ -10,9 +10,8 @@
 
 layout(constant_id = 1) const uint shade_features = 0u;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
-layout(constant_id = 3) const int shade_samples = 2; // of the G-buffer along each side of a pixel
-layout(constant_id = 4) const int shade_side = SHADE_SIDE; // of the pattern
-layout(constant_id = 5) const int shade_step = 1; // pixels along each side of a block: shade_part.glsl
+layout(constant_id = 3) const int shade_side = SHADE_SIDE; // of the pattern
+layout(constant_id = 4) const int shade_step = 1; // pixels along each side of a block: shade_part.glsl
 TYN_ARGS(shade_args args);
 
 #define MEDIUM_BLOCK 0
@@ -37,7 +36,14 @@ TYN_UNIFORM(16, camera, camera_block camera);
 layout(binding = 17) uniform sampler3D moments_tex;
 #define WALLS_AT 18
 #define LATTICE_ROOMS 20
-#define SHADE_AT (GBUFFER_END + 1) // the first binding of each kernel's own
+#define GEOMETRY_AT (GBUFFER_END + 1)
+#ifdef SHADE_COLOURS // the kernel asks what surfaces reflect and emit
+#define MATERIALS_AT (GEOMETRY_AT + 4)
+#define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
+#define SHADE_AT (MATERIALS_AT + 3) // the first binding of each kernel's own
+#else
+#define SHADE_AT (GEOMETRY_AT + 4)
+#endif
 #include "shaders/lattice/lattice.glsl"
 TYN_UNIFORM(GBUFFER_END, environment, env_block environment);
 #include "shaders/walls/lattice_walls.glsl"
@@ -45,6 +51,7 @@ TYN_UNIFORM(GBUFFER_END, environment, env_block environment);
 
 // A macro: its value is a specialization constant, and engine/gpu/specialize.c drops what is off.
 #define shade_has(feature) ((shade_features & (feature)) != 0u)
+#include "shaders/surfaces/gbuffer_triangle.glsl"
 
 // The lattice whose light there is: call it with SHADE_LATTICE or SHADE_OUTSIDE.
 lattice_box shade_lattice()
@@ -60,35 +67,14 @@ struct shade_point {
     vec3 facet;    // of the triangle: for shadows
 };
 
-// Sample k of a pixel whose first one is at `corner`.
-ivec2 shade_texel(ivec2 corner, int k)
+gbuffer_pixel shade_pixel(ivec2 pixel)
 {
-    return corner + ivec2(k % shade_samples, k / shade_samples);
+    return gbuffer_pixel_at(pixel, camera.size.x);
 }
 
-// What the pixel shows; its normals.
-gbuffer_facing shade_facing(ivec2 pixel)
+shade_point shade_point_of(const gbuffer_point p)
 {
-    return gbuffer_facing_unpack(imageLoad(facing_image, pixel));
-}
-
-// The distance of a sample, m; 0: no surface.
-float shade_distance(ivec2 texel)
-{
-    return texelFetch(distances_tex, texel, 0).r;
-}
-
-// Part k of a pixel's colours.
-uvec4 shade_colours(ivec2 pixel, int k)
-{
-    return imageLoad(colours_image, ivec2(pixel.x * gbuffer_texels(shade_samples) + k, pixel.y));
-}
-
-// Where the ray of a sample ends.
-vec3 shade_position(ivec2 texel, float distance)
-{
-    camera_ray ray = camera_ray_through(camera, (vec2(texel) + 0.5) / float(shade_samples));
-    return ray.origin + distance * ray.direction;
+    return shade_point(p.at, p.normal, p.facet);
 }
 
 vec3 shade_left(const beam_tau tau)

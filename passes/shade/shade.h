@@ -29,6 +29,7 @@ typedef struct tyn_shade_params {
     uint32_t sight_places[3];
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
+    uint32_t several;  // 1: pixels may show several pieces of surface, as they have several samples
     uint32_t parted;   // as tyn_raymarch_params.parted, of pixels and of those that are listed
     uint32_t sky_fan;  // directions of an ordinate
     uint32_t sky_cells
@@ -57,8 +58,8 @@ typedef struct tyn_shade_params {
     TYN_SKY_MAPS(X##_OPTIONAL, SHADE), \
     TYN_COLUMNS(X##_OPTIONAL, SHADE), \
     X(SHADE, SURFACE_RADIANCE, surface_radiance, OUT, IMAGE_2D, \
-        "RG32UI, packed_colour.glsl, as large as \"distances\": radiance to the camera, W/(m^2 sr)", \
-        .format = VK_FORMAT_R32G32_UINT), \
+        "piece_light.glsl: radiance to the camera, W/(m^2 sr), and distance, m", \
+        .format = VK_FORMAT_R32G32B32A32_UINT), \
     X(SHADE, COUNTERS, counters, OUT, BUFFER, \
         "struct counters_block: places where the lattice's light on a surface was clamped"), \
     X(SHADE, FORWARD, forward, SCRATCH, RGBA_3D, "shade_forward.comp: exists with a lattice, suns and shadows"), \
@@ -68,6 +69,8 @@ typedef struct tyn_shade_params {
         "a block's part of the VPLs' light, then all", .format = VK_FORMAT_R32G32B32A32_UINT), \
     X(SHADE, PART_ROWS, part_rows, SCRATCH, IMAGE_2D, \
         "summed along rows, then all smooth light", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(SHADE, EDGE_COUNT, edge_count, SCRATCH, BUFFER, "struct gbuffer_edge_count"), \
+    X(SHADE, EDGES, edges, SCRATCH, BUFFER, "uint[]: pixels that show several pieces of surface"), \
     X(SHADE, ALONE_COUNT, alone_count, SCRATCH, BUFFER, "shade_alone.glsl: struct gbuffer_edge_count"), \
     X(SHADE, ALONE, alone, SCRATCH, BUFFER, "pixels with pieces that have smooth light of their own")
 // clang-format on

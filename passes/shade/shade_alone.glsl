@@ -17,10 +17,8 @@ layout(binding = SHADE_ALONE_COUNT, scalar) SHADE_ALONE_COUNTED buffer alone_cou
 };
 layout(binding = SHADE_ALONE, scalar) SHADE_ALONE_LISTED buffer alone_buffer
 {
-    uvec2 alone_pixels[]; // x | y << 16; samples on such pieces: bits, SHADE_ALONE_WHOLE: all, on one piece
+    uvec2 alone_pixels[]; // x | y << 16; of pixels the samples of such pieces: bits
 };
-
-const uint SHADE_ALONE_WHOLE = 1u << 31;
 
 #ifndef SHADE_ALONE_TAKEN
 // `many`: elements of the list that a thread takes.

@@ -3,7 +3,6 @@
 
 // Numbers of specialisation constants.
 #define SHADE_SPEC_FEATURES 1
-#define SHADE_SPEC_SAMPLES 3
 
 // Bits of the specialisation constant "features".
 #define SHADE_MEDIUM (1u << 0)  // light is attenuated on its way

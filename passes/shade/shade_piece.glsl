@@ -20,11 +20,13 @@ const float PI = 3.14159265358979;
 
 #include "shade_outside.glsl"
 
+#ifdef SHADE_COLOURS
 // Towards the camera, W/(m^2 sr).
 vec3 shade_radiance(const gbuffer_colours colours, vec3 irradiance)
 {
     return colours.emission + colours.albedo * irradiance / PI;
 }
+#endif
 
 // What the lattice's light counts on a face of its box, beside that of the faces (docs/measurements.md, "Constants").
 const float SHADE_WITHIN = 0.25;

@@ -2,31 +2,37 @@
 #include "shade.glsl"
 #include "shade_part.glsl"
 
-// Of a block's first pixel on one piece of surface the plane, at the block's middle; where there is none, a sample of the
-// first pixel that shows a surface: the one that `facing` is for. `part`: with no light yet. Without a surface: facing
-// nothing.
+// Of a block's first pixel on one piece of surface the plane, at the block's middle; where there is none, the sample
+// nearest the middle of the first pixel that shows a surface. `part`: with no light yet.
 shade_point shade_place(ivec2 block, out shade_part part)
 {
     ivec2 pixel = block * shade_step, last = ivec2(camera.size) - 1;
-    gbuffer_facing found = shade_facing(pixel);
-    for (int k = 1; k < shade_step * shade_step && found.shown != GBUFFER_WHOLE; k++) {
-        ivec2 next = min(block * shade_step + ivec2(k % shade_step, k / shade_step), last);
-        gbuffer_facing other = shade_facing(next);
-        if (other.shown == GBUFFER_WHOLE || found.shown == GBUFFER_NONE) {
+    gbuffer_pixel found = shade_pixel(pixel);
+    bool none = gbuffer_is_none(found);
+    for (int k = 1; k < shade_step * shade_step && (gbuffer_is_several(found) || none); k++) {
+        gbuffer_pixel other = shade_pixel(min(pixel + ivec2(k % shade_step, k / shade_step), last));
+        if (gbuffer_is_none(other) ? false : !gbuffer_is_several(other) || none) {
             found = other;
-            pixel = next;
+            none = false;
         }
     }
-    bool none = found.shown == GBUFFER_NONE, one = found.shown == GBUFFER_WHOLE;
-    ivec2 texel = shade_texel(pixel * shade_samples, found.which);
-    float away = none ? 0.0 : shade_distance(texel);
-    vec3 position = shade_position(texel, away);
+    gbuffer_point p = gbuffer_point(0.0, camera.origin, vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), true);
+    bool several = gbuffer_is_several(found);
+    if (several) {
+        int count = found.side * found.side, nearest = found.side / 2 * (found.side + 1);
+        for (int k = 0; k < count && gbuffer_index(found, nearest) == 0u; k++) {
+            nearest = nearest + 1 < count ? nearest + 1 : 0;
+        }
+        p = gbuffer_sample(found, nearest, gbuffer_index(found, nearest));
+    } else if (!none) {
+        uint members;
+        p = gbuffer_piece(found, gbuffer_all(found), members);
+    }
     camera_ray ray = camera_ray_through(camera, shade_middle(block));
-    float facing = dot(ray.direction, found.facet), distance = dot(position - ray.origin, found.facet) / facing;
-    distance = abs(facing) > 0.02 && distance > 0.0 ? distance : away;
-    part = shade_part(vec3(0.0), none ? 0.0 : distance * dot(ray.direction, camera.forward), found.facet, true, false,
-                      false);
-    return shade_point(one ? ray.origin + distance * ray.direction : position, found.normal, found.facet);
+    float facing = dot(ray.direction, p.facet), distance = dot(p.at - ray.origin, p.facet) / facing;
+    distance = abs(facing) > 0.02 && distance > 0.0 ? distance : p.distance;
+    part = shade_part(vec3(0.0), none ? 0.0 : distance * dot(ray.direction, camera.forward), p.facet, true, false, false);
+    return shade_point(several ? p.at : ray.origin + distance * ray.direction, p.normal, p.facet);
 }
 
 // Does the light of VPLs of which shade_vpls found `nearest` change within the pattern around a block?

@@ -1,18 +1,23 @@
 // shade_surface.comp -- radiance of the surfaces towards the camera.
 //
-// A thread has a pixel of the picture, which it shades if that shows one piece of surface; or one of the list of pixels that show
-// several, or one beside nothing, whose pieces it shades one after another (args.listed).
+// A thread has a pixel of the picture, which it shades if all its samples see one triangle; else it lists the pixel. Then a thread has
+// one of the list, whose pieces of surface it shades one after another (args.listed).
+#define SHADE_COLOURS
 #include "shaders/surfaces/gbuffer_edges.glsl"
+#include "shaders/surfaces/piece_light.glsl"
 #include "shade_piece.glsl"
-#include "shade_whole.glsl"
-#include "shade_several.glsl"
 #define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
 #define SHADE_ALONE (SHADE_PIECE_AT + 2)
 #include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D surface_radiance_image; // packed_colour.glsl, and the piece's number
+layout(binding = SHADE_PIECE_AT, rgba32ui) uniform writeonly uimage2D surface_radiance_image; // piece_light.glsl
+TYN_UPDATE(SHADE_PIECE_AT + 3, edge_count, gbuffer_edge_count edge_count);
+layout(binding = SHADE_PIECE_AT + 4, scalar) buffer edges_buffer
+{
+    uint edges[]; // x | y << 16
+};
 
 bool is_listed()
 {
@@ -23,23 +28,8 @@ bool is_listed()
     return listed;
 }
 
-// Samples of the pixel that are to be shaded: bits. Of those that show no surface the picture gets 0.
-uint samples_shown(ivec2 pixel, const gbuffer_facing seen, bool listed)
-{
-    uint shown = 0u;
-    for (int k = 0; k < shade_samples * shade_samples; k++) {
-        ivec2 texel = shade_texel(pixel * shade_samples, k);
-        bool is = listed ? shade_distance(texel) > 0.0 : seen.shown == GBUFFER_WHOLE;
-        shown |= is ? 1u << k : 0u;
-        if (listed ? !is : seen.shown == GBUFFER_NONE) {
-            imageStore(surface_radiance_image, texel, uvec4(0u));
-        }
-    }
-    return shown;
-}
-
 // Smooth light that is looked up. `lone`: no place tells of it.
-vec3 smooth_light_found(const shade_point p, ivec2 pixel, vec2 middle, bool listed, out bool lone)
+vec3 smooth_light_found(const shade_point p, ivec2 pixel, vec2 middle, bool several, out bool lone)
 {
     lone = false;
     if (shade_step > 1) {
@@ -47,7 +37,7 @@ vec3 smooth_light_found(const shade_point p, ivec2 pixel, vec2 middle, bool list
     }
     vec3 light = vec3(0.0);
     if (shade_has(SHADE_SHARED)) {
-        if (listed) {
+        if (several) {
             light = smooth_light_beside(p, middle, lone);
         } else {
             light = shade_unpack(imageLoad(part_image, pixel)).irradiance;
@@ -70,37 +60,42 @@ void main()
     if (!is) {
         return;
     }
-    gbuffer_facing seen = shade_facing(pixel);
-    uint left = samples_shown(pixel, seen, listed);
-    uint alone = 0u; // bit k: sample k shows a piece that no place tells of
-    for (uint piece = 0u; left != 0u; piece++) {
-        gbuffer_colours colours;
-        uint members = left;
+    gbuffer_pixel seen = shade_pixel(pixel);
+    if (!listed && gbuffer_is_mixed(seen)) {
+        uint n = atomicAdd(edge_count.count, 1u);
+        edges[n] = uint(pixel.y) << 16 | uint(pixel.x);
+        uvec2 groups = gbuffer_edge_groups(n, GBUFFER_ROW);
+        atomicMax(edge_count.groups.x, groups.x);
+        atomicMax(edge_count.groups.y, groups.y);
+        atomicMax(edge_count.groups.z, 1u);
+        return;
+    }
+    uint alone = 0u; // samples of pieces that no place tells of: bits
+    gbuffer_groups groups = gbuffer_groups_of(seen);
+    piece_light light[2] = piece_light[2](piece_light(vec3(0.0), 0.0), piece_light(vec3(0.0), 0.0));
+    for (uint left = groups.first | groups.second, members; left != 0u; left &= ~members) {
+        gbuffer_point found = gbuffer_piece(seen, gbuffer_of_group(groups, left), members);
+        shade_point p = shade_point_of(found);
+        bool several = listed && gbuffer_is_several(seen);
         vec4 part = vec4(pixel, pixel + 1);
-        shade_point p;
-        if (listed) {
-            p = piece_of(pixel, left, colours, members);
-            part = part_of(pixel * shade_samples, members);
-        } else {
-            p = shade_whole(pixel, seen);
-            colours = gbuffer_unpack(shade_colours(pixel, 0));
+        if (several) {
+            part = gbuffer_part(seen, members);
         }
         bool lone;
-        vec3 smoothed = smooth_light_found(p, pixel, 0.5 * (part.xy + part.zw), listed, lone);
+        vec3 smoothed = smooth_light_found(p, pixel, 0.5 * (part.xy + part.zw), several, lone);
         vec3 irradiance = shade_step > 1 ? sharp_light_at(p, part) : irradiance_at(p, part);
         irradiance += lone ? vec3(0.0) : smoothed;
-        alone |= lone ? (listed ? members : SHADE_ALONE_WHOLE) : 0u;
-        uvec2 radiance = colour_pack(shade_radiance(colours, irradiance)) | uvec2(0u, min(piece, 3u) << 30);
-        for (int k = 0; k < shade_samples * shade_samples; k++) {
-            if ((members >> k & 1u) != 0u) {
-                imageStore(surface_radiance_image, shade_texel(pixel * shade_samples, k), uvec4(radiance, 0u, 0u));
-            }
-        }
-        left &= ~members;
+        alone |= lone ? members : 0u;
+        vec3 radiance = shade_radiance(gbuffer_colours_of(seen, members, found), irradiance);
+        light[0] = piece_light_add(light[0], bitCount(members & groups.first), radiance, found.distance);
+        light[1] = piece_light_add(light[1], bitCount(members & groups.second), radiance, found.distance);
         if (!shade_has(SHADE_EDGES)) {
             break; // known when the kernel is compiled
         }
     }
+    light[0] = piece_light_mean(light[0], bitCount(groups.first));
+    light[1] = piece_light_mean(light[1], bitCount(groups.second));
+    imageStore(surface_radiance_image, pixel, piece_light_pack(light[0], light[1], groups.second != 0u));
     if (alone != 0u) {
         shade_list_alone(pixel, alone, 1u);
     }

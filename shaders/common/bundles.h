@@ -68,14 +68,7 @@
 
 // What the camera sees of the surfaces (gbuffer.glsl).
 #define TYN_GBUFFER(X, P) \
-    X(P, DISTANCES, distances, IN, IMAGE_2D, \
-        "along the rays of a pixel's samples, m; 0: no surface", .format = VK_FORMAT_R32_SFLOAT), \
-    X(P, FACING, facing, IN, IMAGE_2D, \
-        "what a pixel shows; normals (M) of facet and for shading, folded", .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(P, COLOURS, colours, IN, IMAGE_2D, \
-        "albedo and emission in W/(m^2 sr); of edges, triangles of samples", .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(P, EDGE_COUNT, edge_count, IN, BUFFER, "struct gbuffer_edge_count"), \
-    X(P, EDGES, edges, IN, BUFFER, "uint[]: pixels that show several pieces of surface")
+    X(P, SEEN, seen, IN, IMAGE_2D, "gbuffer.glsl: the triangle that each sample sees", .format = VK_FORMAT_R32_UINT)
 
 // Surfaces: where they are (surface_trace.glsl), ...
 #define TYN_GEOMETRY(X, P) \

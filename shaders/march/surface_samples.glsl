@@ -1,107 +1,67 @@
-// surface_samples.glsl -- the samples of the scene's surfaces in a pixel: radiance, and distance or infinity.
+// surface_samples.glsl -- the surfaces that a pixel shows, in two groups: radiance, and distance or infinity.
 //
-// Before including: SURFACE_RADIANCE and SURFACE_DISTANCES as bindings of what passes shade and gbuffer made.
+// Before including: SURFACE_RADIANCE and GBUFFER_AT as bindings of what passes shade and gbuffer made; the block `camera`.
 #ifndef TYN_SURFACE_SAMPLES_GLSL
 #define TYN_SURFACE_SAMPLES_GLSL
 #include "host_depth.glsl"
-#include "shaders/colour/packed_colour.glsl"
+#include "shaders/surfaces/gbuffer.glsl"
+#include "shaders/surfaces/piece_light.glsl"
 
-layout(binding = SURFACE_RADIANCE, rg32ui) uniform readonly uimage2D surface_image;
-layout(binding = SURFACE_DISTANCES) uniform sampler2D distances_tex;
-
-// Samples along each side of a pixel.
-int surface_side(const camera_block camera)
-{
-    return textureSize(distances_tex, 0).x / int(camera.size.x);
-}
-
-// Of sample i: radiance, and distance or infinity.
-float surface_distance(ivec2 pixel, int side, int i)
-{
-    float away = texelFetch(distances_tex, pixel * side + ivec2(i % side, i / side), 0).r;
-    return away > 0.0 ? away : TYN_INFINITY;
-}
-
-vec3 surface_radiance(ivec2 pixel, int side, int i)
-{
-    return colour_unpack(imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).xy);
-}
-
-// The piece of surface that it shows, of those in the pixel; all from the fourth on have one number.
-uint surface_piece(ivec2 pixel, int side, int i)
-{
-    return imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).y >> 30;
-}
+layout(binding = SURFACE_RADIANCE, rgba32ui) uniform readonly uimage2D surface_image;
 
 struct surface_samples {
-    int side;     // samples along each side of the pixel
-    vec4 mean;    // radiance and distance, if they are even; else the distance is the shortest
-    bool even;    // about equally far away, or no surface at all
+    vec4 mean;     // radiance; distance, the shortest where they are not about equal
     float covered; // share that shows a surface
 };
 
-// Samples that are about equally far away.
+// One of the pixel's groups of samples, both if they are about equally far away, or samples that see nothing.
 struct surface_group {
     vec4 mean;   // radiance and distance; with distance infinity: no surface
-    float share; // of the pixel's samples
-    uint left;   // bits: the samples that are not among them, nor were before
+    float share; // of the pixel
+    uint left;   // bits: the groups that are not among them, nor were before
     vec2 where;  // their middle in the pixel
 };
 
-// Of the samples `left` (bits), the nearest and those up to 1.05 times as far. `one_piece`: only on the same piece of
-// surface: their mean distance is on it, where that of both sides of an edge is behind the edge.
-surface_group surface_group_from(const camera_block camera, ivec2 pixel, uint left, bool one_piece)
+// Of the groups `left` (bits), the nearest, and the other if it is up to 1.05 times as far; not with `one_piece`: the mean
+// distance of both sides of an edge is behind the edge.
+surface_group surface_group_from(ivec2 pixel, uint left, bool one_piece)
 {
-    int side = surface_side(camera);
-    float nearest = TYN_INFINITY, count = 0.0;
-    int first = 0;
-    for (int i = 0; i < side * side; i++) {
-        float away = (left >> i & 1u) != 0u ? surface_distance(pixel, side, i) : TYN_INFINITY;
-        first = away < nearest ? i : first;
-        nearest = min(nearest, away);
-    }
-    uint piece = surface_piece(pixel, side, first);
-    vec3 sum = vec3(0.0);
-    vec2 where = vec2(0.0);
-    float inverses = 0.0;
-    for (int i = 0; i < side * side; i++) {
-        float away = surface_distance(pixel, side, i);
-        bool here = (left >> i & 1u) != 0u && (away < 1.05 * nearest || nearest == TYN_INFINITY);
-        here = here && (!one_piece || nearest == TYN_INFINITY || surface_piece(pixel, side, i) == piece);
-        sum += here && nearest < TYN_INFINITY ? surface_radiance(pixel, side, i) : vec3(0.0);
-        count += here ? 1.0 : 0.0;
-        inverses += here ? 1.0 / max(away, 1e-30) : 0.0;
-        where += here ? (vec2(i % side, i / side) + 0.5) / float(side) : vec2(0.0);
-        left &= here ? ~(1u << i) : ~0u;
-    }
+    gbuffer_pixel seen = gbuffer_pixel_at(pixel, camera.size.x);
+    gbuffer_groups groups = gbuffer_groups_of(seen);
+    uvec4 texel = imageLoad(surface_image, pixel);
+    bool two = groups.second != 0u;
+    piece_light first = piece_light_unpack(texel, two, 0), second = piece_light_unpack(texel, two, 1);
+    vec2 away = vec2((left & 1u) != 0u && groups.first != 0u ? first.distance : TYN_INFINITY,
+                     (left & 2u) != 0u && two ? second.distance : TYN_INFINITY);
+    float nearest = min(away.x, away.y);
+    bool none = nearest == TYN_INFINITY, both = !one_piece && !none && max(away.x, away.y) < 1.05 * nearest;
+    uint among = none ? 4u : both ? 3u : away.x <= away.y ? 1u : 2u; // bits of groups, 4: nothing
+    uint x = (among & 1u) != 0u ? groups.first : 0u, y = (among & 2u) != 0u ? groups.second : 0u;
+    uint members = none ? gbuffer_all(seen) & ~(groups.first | groups.second) : x | y;
+    piece_light sum = piece_light(vec3(0.0), 0.0);
+    sum = piece_light_add(sum, bitCount(x), first.radiance, first.distance);
+    sum = piece_light_add(sum, bitCount(y), second.radiance, second.distance);
+    piece_light mean = piece_light_mean(sum, bitCount(members));
     surface_group group;
-    // The reciprocal of the distance to a plane is nearly linear over the pixel.
-    group.mean = vec4(sum / max(count, 1.0), nearest < TYN_INFINITY ? count / inverses : TYN_INFINITY);
-    group.share = count / float(side * side);
-    group.left = left;
-    group.where = where / max(count, 1.0);
+    group.mean = vec4(none ? vec3(0.0) : mean.radiance, none ? TYN_INFINITY : both ? mean.distance : nearest);
+    group.share = float(bitCount(members)) / float(bitCount(gbuffer_all(seen)));
+    group.left = left & ~among;
+    group.where = gbuffer_middle(seen, members);
     return group;
 }
 
-surface_samples surface_samples_of(const camera_block camera, ivec2 pixel)
+surface_samples surface_samples_of(ivec2 pixel)
 {
-    surface_samples s;
-    s.side = surface_side(camera);
-    float nearest = TYN_INFINITY, farthest = 0.0, inverses = 0.0, count = float(s.side * s.side);
-    vec3 sum = vec3(0.0);
-    s.covered = 0.0;
-    for (int i = 0; i < s.side * s.side; i++) {
-        float away = surface_distance(pixel, s.side, i);
-        bool found = away < TYN_INFINITY;
-        sum += found ? surface_radiance(pixel, s.side, i) : vec3(0.0);
-        s.covered += found ? 1.0 / count : 0.0;
-        nearest = min(nearest, away);
-        farthest = max(farthest, away);
-        inverses += 1.0 / max(away, 1e-30);
+    surface_group near = surface_group_from(pixel, ~0u, false);
+    surface_samples s = surface_samples(near.mean, near.mean.a < TYN_INFINITY ? near.share : 0.0);
+    s.mean.rgb *= s.covered;
+    if (s.covered > 0.0 && s.covered < 1.0) {
+        surface_group far = surface_group_from(pixel, near.left, false);
+        if (far.mean.a < TYN_INFINITY) {
+            s.mean.rgb += far.share * far.mean.rgb;
+            s.covered += far.share;
+        }
     }
-    // The reciprocal of the distance to a plane is nearly linear over the pixel.
-    s.even = nearest == TYN_INFINITY || farthest < 1.05 * nearest;
-    s.mean = vec4(sum / count, s.even && nearest < TYN_INFINITY ? count / inverses : nearest);
     return s;
 }
 

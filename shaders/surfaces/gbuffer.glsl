@@ -1,98 +1,129 @@
-// gbuffer.glsl -- what pass gbuffer stores of the surface that a ray of the camera meets first.
+// gbuffer.glsl -- what pass gbuffer stores: the triangle that each sample of the picture sees.
 //
-// `distances`, R32F, a texel a sample, those of a pixel side by side: m along the ray; 0: no surface.
-// `facing`, RGBA32UI, a texel a pixel: what it shows (GBUFFER_*), the facet's normal and that for shading, in M and on
-// the camera's side.
-// `colours`, RGBA32UI, gbuffer_texels(samples along a side) texels a pixel, side by side.
+// `seen`, R32UI, a texel a sample, those of a pixel side by side: index + 1, 0: none; bits above it tell of the pixel. All else is
+// computed from the triangles where it is needed (gbuffer_triangle.glsl).
 //
-// Where all samples of a pixel lie on one piece of surface, `facing` has the first one's facet and their mean normal,
-// and the first of `colours` their mean albedo and emission. Of a pixel that shows several pieces, or one beside
-// nothing, `facing` is that of the sample nearest its middle, and `colours` hold the triangles that samples see, four a
-// texel: index + 1, 0: none. These pixels are in a list as well.
+// Samples of a pixel lie on one piece of surface, or on several. Their light is stored for two groups of them: a piece each, or
+// what is near and what is far (piece_light.glsl).
 //
-// Define GBUFFER_AT as the first binding of the bundle TYN_GBUFFER (bundles.h) to read it.
+// Define GBUFFER_AT as the binding of the bundle TYN_GBUFFER (bundles.h) to read it.
 #ifndef TYN_GBUFFER_GLSL
 #define TYN_GBUFFER_GLSL
-#include "shaders/colour/packed_colour.glsl"
-#include "shaders/common/octahedral.glsl"
-#include "gbuffer_edge_args.h"
 
-#define GBUFFER_NONE 0u
-#define GBUFFER_WHOLE 1u
-#define GBUFFER_SEVERAL 2u
+#define GBUFFER_SEVERAL 0x80000000u // of the first sample: the pixel shows several pieces, or one beside nothing
+#define GBUFFER_MIXED 0x40000000u   // of the first sample: not all of the pixel's see the same
+#define GBUFFER_SECOND 0x20000000u  // in the second group
+#define GBUFFER_INDEX 0x1fffffffu   // gbuffer.h has the number of triangles that fit
+
+struct gbuffer_pixel {
+    ivec2 at;
+    int side;   // samples along each side
+    uint first; // texel of the first sample
+};
+
+struct gbuffer_groups { // samples: bits
+    uint first, second;
+};
+
+// The samples among `left` of the first group, or of the second if these are none.
+uint gbuffer_of_group(const gbuffer_groups g, uint left)
+{
+    return (left & g.first) != 0u ? left & g.first : left & g.second;
+}
+
+uint gbuffer_all(const gbuffer_pixel p)
+{
+    return (1u << p.side * p.side) - 1u;
+}
+
+ivec2 gbuffer_texel(const gbuffer_pixel p, int k)
+{
+    return p.at * p.side + ivec2(k % p.side, k / p.side);
+}
+
+// Where sample k is, pixels.
+vec2 gbuffer_place(const gbuffer_pixel p, int k)
+{
+    return (vec2(gbuffer_texel(p, k)) + 0.5) / float(p.side);
+}
+
+// The middle of samples, pixels from the pixel's corner.
+vec2 gbuffer_middle(const gbuffer_pixel p, uint members)
+{
+    vec2 sum = vec2(0.0);
+    for (uint some = members; some != 0u; some &= some - 1u) {
+        int k = findLSB(some);
+        sum += vec2(k % p.side, k / p.side) + 0.5;
+    }
+    return sum / float(max(bitCount(members), 1) * p.side);
+}
+
+// The part of the picture that samples fill, or the rectangle around them: from xy to zw, pixels.
+vec4 gbuffer_part(const gbuffer_pixel p, uint members)
+{
+    vec4 part = vec4(1e9, 1e9, -1e9, -1e9);
+    for (uint some = members; some != 0u; some &= some - 1u) {
+        vec2 at = vec2(gbuffer_texel(p, findLSB(some)));
+        part = vec4(min(part.xy, at), max(part.zw, at + 1.0));
+    }
+    return part / float(p.side);
+}
+
+bool gbuffer_is_several(const gbuffer_pixel p)
+{
+    return (p.first & GBUFFER_SEVERAL) != 0u;
+}
+
+bool gbuffer_is_mixed(const gbuffer_pixel p)
+{
+    return (p.first & GBUFFER_MIXED) != 0u;
+}
+
+bool gbuffer_is_none(const gbuffer_pixel p)
+{
+    return p.first == 0u;
+}
 
 #ifdef GBUFFER_AT
-layout(binding = GBUFFER_AT) uniform sampler2D distances_tex;
-layout(binding = GBUFFER_AT + 1, rgba32ui) uniform readonly uimage2D facing_image;
-layout(binding = GBUFFER_AT + 2, rgba32ui) uniform readonly uimage2D colours_image;
-TYN_READ(GBUFFER_AT + 3, edge_count, gbuffer_edge_count edge_count);
-TYN_READ(GBUFFER_AT + 4, edges, uint edges[]);
-#define GBUFFER_END (GBUFFER_AT + 5)
+layout(binding = GBUFFER_AT, r32ui) uniform readonly uimage2D seen_image;
+#define GBUFFER_END (GBUFFER_AT + 1)
+
+// `width` of the picture, pixels.
+gbuffer_pixel gbuffer_pixel_at(ivec2 at, uint width)
+{
+    int side = imageSize(seen_image).x / int(width);
+    return gbuffer_pixel(at, side, imageLoad(seen_image, at * side).r);
+}
+
+uint gbuffer_seen(const gbuffer_pixel p, int k)
+{
+    return gbuffer_is_mixed(p) ? imageLoad(seen_image, gbuffer_texel(p, k)).r : p.first;
+}
+
+// Of the triangle that sample k sees, + 1; 0: none.
+uint gbuffer_index(const gbuffer_pixel p, int k)
+{
+    return gbuffer_seen(p, k) & GBUFFER_INDEX;
+}
+
+// Samples that see a surface: bits.
+uint gbuffer_shown(const gbuffer_pixel p)
+{
+    uint shown = gbuffer_is_none(p) ? 0u : gbuffer_all(p);
+    for (int k = 0; k < p.side * p.side && gbuffer_is_several(p); k++) {
+        shown &= gbuffer_index(p, k) == 0u ? ~(1u << k) : ~0u;
+    }
+    return shown;
+}
+
+gbuffer_groups gbuffer_groups_of(const gbuffer_pixel p)
+{
+    uint shown = gbuffer_shown(p), second = 0u;
+    for (int k = 0; k < p.side * p.side && gbuffer_is_mixed(p); k++) {
+        second |= (gbuffer_seen(p, k) & GBUFFER_SECOND) != 0u ? 1u << k : 0u;
+    }
+    return gbuffer_groups(shown & ~second, second);
+}
 #endif
-
-struct gbuffer_colours {
-    vec3 albedo;
-    vec3 emission; // W/(m^2 sr)
-};
-const gbuffer_colours GBUFFER_BLACK = gbuffer_colours(vec3(0.0), vec3(0.0));
-
-struct gbuffer_point {
-    float distance; // m along the ray; 0: no surface
-    vec3 normal;    // for shading
-    vec3 facet;     // of the triangle
-    gbuffer_colours colours;
-};
-
-gbuffer_colours gbuffer_add(const gbuffer_colours sum, float share, const gbuffer_colours c)
-{
-    return gbuffer_colours(sum.albedo + share * c.albedo, sum.emission + share * c.emission);
-}
-
-struct gbuffer_facing {
-    uint shown; // GBUFFER_*
-    int which;  // of the pixel's samples it is for
-    vec3 normal, facet;
-};
-
-// Floats, but for the lowest bits of the shading normal: they tell what is shown, and of which sample it is.
-uvec4 gbuffer_facing_pack(const gbuffer_facing f)
-{
-    uvec4 texel = floatBitsToUint(vec4(octahedral_of(f.facet), octahedral_of(f.normal)));
-    return uvec4(texel.xy, (texel.z & ~3u) | f.shown, (texel.w & ~15u) | uint(f.which));
-}
-
-gbuffer_facing gbuffer_facing_unpack(uvec4 texel)
-{
-    vec2 facet = uintBitsToFloat(texel.xy), normal = uintBitsToFloat(texel.zw & ~uvec2(3u, 15u));
-    return gbuffer_facing(texel.z & 3u, int(texel.w & 15u), normalize(octahedral_point(normal)),
-                          normalize(octahedral_point(facet)));
-}
-
-// Texels of `colours` that a pixel has side by side.
-int gbuffer_texels(int samples)
-{
-    return (samples * samples + 3) / 4;
-}
-
-// Albedo, 0 to 1: 20 bits a channel.
-uvec4 gbuffer_pack(const gbuffer_colours colours)
-{
-    uvec3 c = uvec3(clamp(colours.albedo, 0.0, 1.0) * 1048575.0 + 0.5);
-    return uvec4(colour_pack(colours.emission), c.r | c.b << 20, c.g | (c.b >> 12) << 20);
-}
-
-gbuffer_colours gbuffer_unpack(uvec4 texel)
-{
-    uvec3 c = uvec3(texel.z & 0xfffffu, texel.w & 0xfffffu, texel.z >> 20 | (texel.w >> 20) << 12);
-    return gbuffer_colours(vec3(c) / 1048575.0, colour_unpack(texel.xy));
-}
-
-// Do a sample at `other` (M) with the normal `facet`, in the distance `distance` from the camera, and one at `first`
-// lie on one piece of surface?
-bool gbuffer_same(const gbuffer_point first, vec3 at, vec3 facet, vec3 other, float distance)
-{
-    vec3 d = other - at;
-    return dot(facet, first.facet) > 0.9 && abs(dot(d, first.facet)) < 0.3 * length(d) + 1e-5 * distance;
-}
 
 #endif

@@ -1,6 +1,8 @@
-// gbuffer.c -- the G-buffer against rays through all triangles, in double precision.
+// gbuffer.c -- the G-buffer, and normals and albedo that pass guides makes of it, against rays through all triangles, in double
+// precision.
 #include "gpu_test.h"
 #include "passes/gbuffer/gbuffer.h"
+#include "passes/guides/guides.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
 #include "shaders/common/scene_args.h"
 #include "solids.h"
@@ -121,40 +123,15 @@ static void make_ray(const struct camera_block *c, double x, double y, double o[
 
 // ---- the device -------------------------------------------------------------------------------
 
-enum { NONE, WHOLE, SEVERAL }; // GBUFFER_*
+enum { NONE, WHOLE, SEVERAL }; // what a pixel shows
+// gbuffer.glsl
+static const uint32_t several_bit = 0x80000000u, mixed_bit = 0x40000000u, second_bit = 0x20000000u,
+                      index_bits = 0x1fffffffu;
 
 typedef struct images {
-    const float *distances;
-    const uint32_t (*facing)[4], (*colours)[4]; // one texel a pixel up to 2 x 2 samples
-    const struct gbuffer_edge_count *edges;
-    double place; // of a ray, what the device's quotients, one along each axis, may change
-    double side;  // of parallel rays: half the picture's, m
+    const uint32_t *seen;
+    const float (*albedo)[4], (*normal)[4]; // means over pixels; the world's normal
 } images;
-
-static float float_of(uint32_t bits)
-{
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static void albedo_of(const uint32_t texel[4], float albedo[3])
-{
-    const uint32_t c[3] = {texel[2] & 0xfffff, texel[3] & 0xfffff,
-                           texel[2] >> 20 | texel[3] >> 20 << 12};
-    for (int k = 0; k < 3; k++) {
-        albedo[k] = (float)c[k] / 1048575;
-    }
-}
-
-static void emission_of(const uint32_t texel[4], float emission[3])
-{
-    const uint32_t c[3] = {texel[0] & 0x3ffff, texel[1] & 0x3ffff,
-                           texel[0] >> 18 | (texel[1] >> 18 & 15) << 14};
-    for (int k = 0; k < 3; k++) {
-        emission[k] = ldexpf((float)c[k], (int)(texel[1] >> 22 & 255) - 127 - 17);
-    }
-}
 
 static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_block *camera,
                    const struct surface_texture *texture, const uint32_t *texels, size_t count,
@@ -168,7 +145,6 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     params.size[0] = WIDTH;
     params.size[1] = HEIGHT;
     params.num_triangles = s->num_triangles;
-    params.textured = 1;
     params.row = ROW;
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
@@ -178,35 +154,27 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
             gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
         [GBUFFER_PORT_VERTICES] =
             gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-        [GBUFFER_PORT_MATERIALS] =
-            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
-        [GBUFFER_PORT_TEXTURES] = gpu_buffer(t, "textures", texture, sizeof *texture),
-        [GBUFFER_PORT_TEXELS] = gpu_buffer(t, "texels", texels, count * sizeof *texels),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "distances", refs[GBUFFER_PORT_DISTANCES], true);
-    tyn_graph_output(t->graph, "facing", refs[GBUFFER_PORT_FACING], true);
-    tyn_graph_output(t->graph, "colours", refs[GBUFFER_PORT_COLOURS], true);
-    tyn_graph_output(t->graph, "edge_count", refs[GBUFFER_PORT_EDGE_COUNT], true);
+    const tyn_guides_params guides = {{WIDTH, HEIGHT}, 1};
+    tyn_ref out[GUIDES_NUM_PORTS] = {
+        [GUIDES_PORT_CAMERA] = refs[GBUFFER_PORT_CAMERA],
+        [GUIDES_PORT_SURFACES] = refs[GBUFFER_PORT_SURFACES],
+        [GUIDES_PORT_TRIANGLES] = refs[GBUFFER_PORT_TRIANGLES],
+        [GUIDES_PORT_VERTICES] = refs[GBUFFER_PORT_VERTICES],
+        [GUIDES_PORT_MATERIALS] =
+            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
+        [GUIDES_PORT_TEXTURES] = gpu_buffer(t, "textures", texture, sizeof *texture),
+        [GUIDES_PORT_TEXELS] = gpu_buffer(t, "texels", texels, count * sizeof *texels),
+        [GUIDES_PORT_SEEN] = refs[GBUFFER_PORT_SEEN],
+    };
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_guides, &guides, out), TYN_OK);
+    tyn_graph_output(t->graph, "seen", refs[GBUFFER_PORT_SEEN], true);
+    tyn_graph_output(t->graph, "albedo", out[GUIDES_PORT_ALBEDO], true);
+    tyn_graph_output(t->graph, "normal", out[GUIDES_PORT_NORMAL], true);
     gpu_run(t);
-    return (images){gpu_map(t, "distances"),
-                    (const uint32_t(*)[4])gpu_map(t, "facing"),
-                    (const uint32_t(*)[4])gpu_map(t, "colours"),
-                    gpu_map(t, "edge_count"),
-                    2 * gpu_ulps(t, GPU_QUOTIENT),
-                    camera->orthographic ? (double)camera->half_width : 0};
-}
-
-static void unfold(float x, float y, float n[3])
-{
-    n[0] = x;
-    n[1] = y;
-    n[2] = 1 - fabsf(x) - fabsf(y);
-    if (n[2] < 0) {
-        n[0] = (1 - fabsf(y)) * (x >= 0 ? 1 : -1);
-        n[1] = (1 - fabsf(x)) * (y >= 0 ? 1 : -1);
-    }
-    vector_normalisef(n);
+    return (images){gpu_map(t, "seen"), (const float(*)[4])gpu_map(t, "albedo"),
+                    (const float(*)[4])gpu_map(t, "normal")};
 }
 
 static void expect_near(const float *found, const float *right, float tolerance, const char *what,
@@ -224,8 +192,7 @@ static void expect_near(const float *found, const float *right, float tolerance,
 typedef struct expected {
     double distance;   // 0: no surface
     uint32_t triangle; // + 1; 0: none
-    float facet[3], normal[3], albedo[3], emission[3];
-    double slant;  // cosine between ray and facet
+    float facet[3], normal[3], albedo[3];
     bool doubtful; // at an edge, where rounding may decide
     bool textured; // then the albedo is not looked at here
 } expected;
@@ -256,117 +223,74 @@ static expected expect(const tyn_surfaces *s, const solids_hit *h, const double 
     const double cosine =
         (double)facet[0] * d[0] + (double)facet[1] * d[1] + (double)facet[2] * d[2];
     const bool front = cosine < 0;
-    right.slant = fabs(cosine);
     for (int c = 0; c < 3; c++) {
         facet[c] = front ? facet[c] : -facet[c];
         normal[c] = front ? normal[c] : -normal[c];
     }
-    turn(facet, right.facet);
-    turn(normal, right.normal);
-    const bool emits = front || (m->flags & TYN_SURFACE_EMITS_BOTH_SIDES);
-    memcpy(right.emission, emits ? m->emission : (float[3]){0}, sizeof right.emission);
+    memcpy(right.facet, facet, sizeof facet);
+    memcpy(right.normal, normal, sizeof normal);
     memcpy(right.albedo, m->albedo, sizeof right.albedo);
     right.textured = m->texture != TYN_NO_TEXTURE;
     return right;
 }
 
-// Where a ray is off shows most on surfaces that are seen edge-on.
-static void check_distance(const images *got, uint32_t i, const expected *right)
-{
-    const double slanted = right->distance > 0 ? got->place / right->slant : 0;
-    if (!(fabs((double)got->distances[i] - right->distance) <=
-          1e-5 * right->distance + 2e-6 + slanted * (right->distance + got->side))) {
-        fail_msg("sample %u: distance %g, not %g", i, (double)got->distances[i], right->distance);
-    }
-}
-
-static void check_facing(const images *got, uint32_t pixel, const expected *right, float tolerance)
-{
-    const uint32_t *texel = got->facing[pixel];
-    float found[3];
-    unfold(float_of(texel[0]), float_of(texel[1]), found);
-    expect_near(found, right->facet, 1e-5f, "facet", pixel);
-    unfold(float_of(texel[2]), float_of(texel[3]), found);
-    expect_near(found, right->normal, tolerance, "normal", pixel);
-}
-
-static void check_colours(const images *got, uint32_t pixel, const expected *right)
-{
-    float found[3];
-    emission_of(got->colours[pixel], found);
-    expect_near(found, right->emission, 1e-5f, "emission", pixel);
-    albedo_of(got->colours[pixel], found);
-    if (!right->textured) {
-        expect_near(found, right->albedo, 1e-6f, "albedo", pixel);
-    }
-}
-
 // A pixel of samples[0 .. side^2 - 1], at image.
 static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image,
-                        const expected *samples, uint32_t count, uint32_t counts[3])
+                        const expected *samples, uint32_t count, uint32_t counts[3],
+                        uint32_t *num_mixed)
 {
-    bool doubtful = false;
+    bool doubtful = false, textured = false, mixed = false, several = false;
     uint32_t shown = 0;
-    expected mean = samples[0];
+    float albedo[3] = {0}, normal[3] = {0};
+    double nearest = 1e30, farthest = 0;
     for (uint32_t k = 0; k < count; k++) {
         doubtful |= samples[k].doubtful;
+        textured |= samples[k].textured;
+        mixed |= samples[k].triangle != samples[0].triangle;
         shown += samples[k].distance > 0;
-        for (int c = 0; k > 0 && c < 3; c++) {
-            mean.normal[c] += samples[k].normal[c];
-            mean.albedo[c] += samples[k].albedo[c];
-            mean.emission[c] += samples[k].emission[c];
+        float cosine = 0;
+        for (int c = 0; c < 3; c++) {
+            cosine += samples[k].facet[c] * samples[0].facet[c];
+            albedo[c] += samples[k].distance > 0 ? samples[k].albedo[c] / (float)count : 0;
+            normal[c] += samples[k].normal[c] / (float)count;
         }
-        mean.textured |= samples[k].textured;
+        nearest = samples[k].distance > 0 ? fmin(nearest, samples[k].distance) : nearest;
+        farthest = fmax(farthest, samples[k].distance);
+        // Its facet is turned, or off the first one's plane.
+        several |= cosine < 0.9f ||
+                   fabs(samples[k].distance - samples[0].distance) > 1e-3 * samples[0].distance;
     }
     if (doubtful) {
         return;
     }
-    const uint32_t what = got->facing[pixel][2] & 3;
-    assert_true((what == NONE) == (shown == 0) && !(what == WHOLE && shown < count));
+    const uint32_t first = got->seen[image[0]];
+    const int what = !shown ? NONE : first & several_bit ? SEVERAL : WHOLE;
+    counts[what]++;
+    *num_mixed += mixed;
+    assert_true(((first & mixed_bit) != 0) == mixed);
+    assert_true(what != WHOLE || shown == count);
+    assert_true(what != SEVERAL || shown < count || several);
+    double range[2][2] = {{1e30, 0}, {1e30, 0}}; // of distances in the groups
     for (uint32_t k = 0; k < count; k++) {
-        check_distance(got, image[k], &samples[k]);
+        const uint32_t seen = got->seen[image[k]];
+        assert_int_equal(seen & index_bits, samples[k].triangle);
+        assert_true(k == 0 || !(seen & (several_bit | mixed_bit)));
+        assert_true(!(seen & second_bit) || samples[k].distance > 0);
+        double *of = range[seen & second_bit ? 1 : 0];
+        of[0] = samples[k].distance > 0 ? fmin(of[0], samples[k].distance) : of[0];
+        of[1] = fmax(of[1], samples[k].distance);
     }
-    counts[what == WHOLE ? 0 : what == NONE ? 1 : 2]++;
-    if (what == WHOLE) {
-        vector_normalisef(mean.normal);
-        for (int c = 0; c < 3; c++) {
-            mean.albedo[c] /= (float)count;
-            mean.emission[c] /= (float)count;
-        }
-        check_facing(got, pixel, &mean, count > 1 ? 1e-3f : 1e-4f);
-        check_colours(got, pixel, &mean);
-    } else if (what == SEVERAL) {
-        uint32_t nearest = count - 1; // right below the middle, or what comes after it
-        for (uint32_t k = 0; samples[nearest].distance <= 0 && k < count; k++) {
-            nearest = k;
-        }
-        assert_int_equal(got->facing[pixel][3] & 15, nearest);
-        check_facing(got, pixel, &samples[nearest], 1e-4f);
-        assert_memory_equal(got->colours[pixel],
-                            ((uint32_t[4]){samples[0].triangle, samples[1].triangle,
-                                           samples[2].triangle, samples[3].triangle}),
-                            sizeof got->colours[pixel]);
-        // Some sample's facet is turned, or off the first one's plane.
-        bool several = shown < count;
-        for (uint32_t k = 1; k < count; k++) {
-            float cosine = 0;
-            for (int c = 0; c < 3; c++) {
-                cosine += samples[k].facet[c] * samples[0].facet[c];
-            }
-            several |= cosine < 0.9f ||
-                       fabs(samples[k].distance - samples[0].distance) > 1e-3 * samples[0].distance;
-        }
-        assert_true(several);
+    // A group spans less than all of them do, if that is much.
+    for (int g = 0; mixed && g < 2; g++) {
+        assert_true(!(range[g][1] > 1.1 * range[g][0]) ||
+                    range[g][1] / range[g][0] <= 1.0001 * sqrt(farthest / nearest));
     }
-}
-
-// Do rows of workgroups hold the whole list, in one row or in full ones?
-static void check_rows(const struct gbuffer_edge_count *edges)
-{
-    const uint32_t groups = (edges->count + GBUFFER_EDGES - 1) / GBUFFER_EDGES;
-    const uint32_t *rows = (const uint32_t *)&edges->groups;
-    assert_int_equal(rows[0], groups < ROW ? groups : ROW);
-    assert_int_equal(rows[1], (groups + ROW - 1) / ROW);
+    expect_near(got->normal[pixel], normal, what == WHOLE && count > 1 ? 1e-3f : 1e-4f, "normal",
+                pixel);
+    if (!textured) {
+        expect_near(got->albedo[pixel], albedo, 1e-6f, "albedo", pixel);
+    }
+    assert_true(fabsf(got->albedo[pixel][3] - (float)shown / (float)count) <= 1e-6f);
 }
 
 static void as_rays_find_it(void **state)
@@ -388,7 +312,7 @@ static void as_rays_find_it(void **state)
         const int32_t samples = 1 + (int32_t)(k % 2);
         images got = draw(t, &scene, &cameras[k], &texture, &white, 1, samples);
         const uint32_t width = WIDTH * (uint32_t)samples;
-        uint32_t edges = 0, seen = 0, counts[3] = {0};
+        uint32_t edges = 0, seen = 0, mixed = 0, counts[3] = {0};
         static expected right[4 * WIDTH * HEIGHT];
         for (uint32_t y = 0; y < HEIGHT * (uint32_t)samples; y++) {
             for (uint32_t x = 0; x < width; x++) {
@@ -420,13 +344,12 @@ static void as_rays_find_it(void **state)
                 image[j] = (i / WIDTH * side + j / side) * width + i % WIDTH * side + j % side;
                 of[j] = right[image[j]];
             }
-            check_pixel(&got, i, image, of, side * side, counts);
+            check_pixel(&got, i, image, of, side * side, counts, &mixed);
         }
-        check_rows(got.edges);
-        most = got.edges->count > most ? got.edges->count : most;
-        assert_true(counts[0] > 100 && (samples == 1) == (counts[2] == 0));
+        most = mixed > most ? mixed : most;
+        assert_true(counts[WHOLE] > 100 && (samples == 1) == (counts[SEVERAL] == 0));
         print_message("camera %zu: %u pixels of one surface, %u of none, %u of several\n", k,
-                      counts[0], counts[1], counts[2]);
+                      counts[WHOLE], counts[NONE], counts[SEVERAL]);
         print_message("camera %zu: %u samples of surfaces, %u at edges\n", k, seen, edges);
         assert_true(seen > 500 && edges < seen / 20);
     }
@@ -459,8 +382,7 @@ static void textures(void **state)
     images got = draw(t, &scene, &above, &texture, texels, count, 1);
     uint32_t white = 0, black = 0;
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-        float albedo[3];
-        albedo_of(got.colours[i], albedo);
+        const float *albedo = got.albedo[i];
         white += fabsf(albedo[0] - 0.5f) < 1e-4f;
         black += albedo[0] < 1e-4f;
         assert_true(albedo[1] == 0);
@@ -472,8 +394,7 @@ static void textures(void **state)
         make_camera((float[]){0, 150, 0}, (float[]){0.01f, -1, 0}, false);
     got = draw(t, &scene, &far, &texture, texels, count, 1);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-        float albedo[3];
-        albedo_of(got.colours[i], albedo);
+        const float *albedo = got.albedo[i];
         if (!(fabsf(albedo[0] - 0.25f) < 2e-3f)) {
             fail_msg("far away, sample %u: %g", i, (double)albedo[0]);
         }

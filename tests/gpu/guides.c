@@ -80,7 +80,7 @@ static void two_cards(void **state)
     params.size[0] = WIDTH;
     params.size[1] = HEIGHT;
     params.num_triangles = s->num_triangles;
-    const tyn_guides_params guides = {{WIDTH, HEIGHT}, params.samples, 0};
+    const tyn_guides_params guides = {{WIDTH, HEIGHT}, 0};
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
         [GBUFFER_PORT_CAMERA] = gpu_buffer(t, "camera", &camera, sizeof camera),
@@ -89,8 +89,6 @@ static void two_cards(void **state)
             gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
         [GBUFFER_PORT_VERTICES] =
             gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-        [GBUFFER_PORT_MATERIALS] =
-            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
     tyn_ref out[GUIDES_NUM_PORTS] = {
@@ -98,12 +96,9 @@ static void two_cards(void **state)
         [GUIDES_PORT_SURFACES] = refs[GBUFFER_PORT_SURFACES],
         [GUIDES_PORT_TRIANGLES] = refs[GBUFFER_PORT_TRIANGLES],
         [GUIDES_PORT_VERTICES] = refs[GBUFFER_PORT_VERTICES],
-        [GUIDES_PORT_MATERIALS] = refs[GBUFFER_PORT_MATERIALS],
-        [GUIDES_PORT_DISTANCES] = refs[GBUFFER_PORT_DISTANCES],
-        [GUIDES_PORT_FACING] = refs[GBUFFER_PORT_FACING],
-        [GUIDES_PORT_COLOURS] = refs[GBUFFER_PORT_COLOURS],
-        [GUIDES_PORT_EDGE_COUNT] = refs[GBUFFER_PORT_EDGE_COUNT],
-        [GUIDES_PORT_EDGES] = refs[GBUFFER_PORT_EDGES],
+        [GUIDES_PORT_MATERIALS] =
+            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
+        [GUIDES_PORT_SEEN] = refs[GBUFFER_PORT_SEEN],
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_guides, &guides, out), TYN_OK);
     tyn_graph_output(t->graph, "albedo", out[GUIDES_PORT_ALBEDO], true);
@@ -132,7 +127,7 @@ static void none(void **state)
 {
     gpu_test *t = *state;
     const struct camera_block camera = make_camera();
-    const tyn_guides_params guides = {{WIDTH, HEIGHT}, 1, 0};
+    const tyn_guides_params guides = {{WIDTH, HEIGHT}, 0};
     tyn_graph_begin(t->graph);
     tyn_ref out[GUIDES_NUM_PORTS] = {[GUIDES_PORT_CAMERA] =
                                          gpu_buffer(t, "camera", &camera, sizeof camera)};

@@ -80,11 +80,11 @@ static void distances(void **state)
             gpu_buffer(t, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes);
         const tyn_path_distance_params params = {WIDTH, HEIGHT};
         assert_int_equal(tyn_graph_add(t->graph, pass, &params, refs), TYN_OK);
-        tyn_graph_output(t->graph, "distances", *gpu_port(pass, refs, "distances"), true);
+        tyn_graph_output(t->graph, "seen", *gpu_port(pass, refs, "seen"), true);
         tyn_graph_output(t->graph, "radiance", *gpu_port(pass, refs, "radiance"), true);
         gpu_run(t);
-        const float *found = gpu_map(t, "distances");
-        const uint32_t(*radiance)[2] = (const uint32_t(*)[2])gpu_map(t, "radiance");
+        const uint32_t *seen = gpu_map(t, "seen");
+        const uint32_t(*light)[4] = (const uint32_t(*)[4])gpu_map(t, "radiance");
         int hits = 0, skipped = 0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             const double u = 2 * (i % WIDTH + 0.5) / WIDTH - 1 + (double)camera.shift[0];
@@ -110,11 +110,14 @@ static void distances(void **state)
             const double place = 2 * gpu_ulps(t, GPU_QUOTIENT);
             const double moved = right + (parallel ? (double)camera.half_width : 0);
             const double off = right > 0 ? place * moved / slant(s, hit.triangle, d) : 0;
-            assert_true(radiance[i][0] == 0 && (radiance[i][1] & 0x3fffff) == 0);
+            assert_true(light[i][0] == 0 && (light[i][1] & 0x3fffff) == 0);
+            assert_true(hit.doubtful || seen[i] == (uint32_t)(hit.triangle + 1));
+            float found;
+            memcpy(&found, &light[i][2], sizeof found);
             skipped += hit.doubtful;
             hits += right > 0;
-            if (!hit.doubtful && !(fabs((double)found[i] - right) <= 1e-5 * right + 2e-6 + off)) {
-                fail_msg("pixel %d: %g, not %g", i, (double)found[i], right);
+            if (!hit.doubtful && !(fabs((double)found - right) <= 1e-5 * right + 2e-6 + off)) {
+                fail_msg("pixel %d: %g, not %g", i, (double)found, right);
             }
         }
         print_message("%d pixels show surfaces, %d too close to an edge to tell\n", hits, skipped);

@@ -90,12 +90,15 @@ static tyn_ref upload(gpu_test *t, const char *name, const texture *x)
                      x->channels, x->texels);
 }
 
-// As packed_colour.glsl, of whole numbers below 2^17; the words are kept in floats.
-static void pack_colour(const float colour[3], float packed[2])
+// As piece_light.glsl, of whole numbers below 2^17; the words are kept in floats.
+static void pack_light(const float of[4], float packed[4])
 {
+    const float *colour = of;
     const uint32_t c[3] = {(uint32_t)colour[0], (uint32_t)colour[1], (uint32_t)colour[2]};
     const uint32_t words[2] = {c[0] | c[2] << 18, c[1] | c[2] >> 14 << 18 | (127u + 17u) << 22};
     memcpy(packed, words, sizeof words);
+    packed[2] = of[3];
+    packed[3] = 0;
 }
 
 void march_run(gpu_test *t, march_scene *s)
@@ -132,14 +135,16 @@ void march_run(gpu_test *t, march_scene *s)
     }
     if (s->surface) {
         const tyn_extent size = {16, 16, 1};
-        float distances[16 * 16], packed[16 * 16][2];
+        float packed[16 * 16][4];
+        uint32_t seen[16 * 16];
         for (int i = 0; i < 16 * 16; i++) {
             const float *of = s->surface + 4 * i;
-            distances[i] = of[3] < INFINITY ? of[3] : 0;
-            pack_colour(of, packed[i]);
+            seen[i] = of[3] < INFINITY ? 1 : 0;
+            pack_light(of, packed[i]);
         }
-        refs[RAYMARCH_PORT_SURFACE] = gpu_image(t, "surface", TYN_IMAGE_2D, size, -2, packed[0]);
-        refs[RAYMARCH_PORT_DISTANCES] = gpu_image(t, "distances", TYN_IMAGE_2D, size, 1, distances);
+        refs[RAYMARCH_PORT_SURFACE] = gpu_image(t, "surface", TYN_IMAGE_2D, size, -4, packed[0]);
+        refs[RAYMARCH_PORT_SEEN] =
+            gpu_image(t, "seen", TYN_IMAGE_2D, size, -2, (const float *)seen);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_raymarch, &s->params, refs), TYN_OK);
     for (uint8_t p = RAYMARCH_PORT_RADIANCE; p < RAYMARCH_NUM_PORTS; p++) {

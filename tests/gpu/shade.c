@@ -392,11 +392,11 @@ static void many_vpls(void **state)
 
 // ---- edges ------------------------------------------------------------------------------------
 
-// Nothing, then the floor, and on it a bar that is narrower than a pixel.
+// Nothing, then the floor, and on it a bar that is narrower than a pixel, whose middle sample sees the floor.
 static int bar_on_floor(double x, double y)
 {
     (void)y;
-    return x < 7.5 ? -1 : x > 15.5 && x < 16 ? 1 : 0;
+    return x < 7.5 ? -1 : x > 15 && x < 15.5 ? 1 : 0;
 }
 
 static void of_suns_and_vpls(const double p[3], const double n[3], double irradiance[3])
@@ -430,10 +430,13 @@ static void edges_of_surfaces(void **state)
         }
         shade_draw(*state);
         shade_compare(of_suns_and_vpls, NULL, i == 2 ? 2e-3 : i == 1 ? 8e-4 : 1e-5);
-        // The number of its piece is beside a sample's radiance, for what makes pixels of samples.
-        for (int y = 0; y < 2 * HEIGHT; y++) {
-            const uint32_t *floor = shade_radiance[y * 2 * WIDTH + 30], *bar = floor + 2;
-            assert_true(floor[1] >> 30 == 0 && bar[1] >> 30 == 1);
+        for (int y = 0; y < HEIGHT;
+             y++) { // how far away they are, for what makes pixels of samples: 12 bits
+            double p[3];
+            for (int k = 0; k < 2; k++) {
+                const double right = shade_meet(&stage.pieces[1 - k], 15.25 + 0.5 * k, y + 0.5, p);
+                assert_true(fabs(shade_group_distance(15, y, k) - right) <= ldexp(right, -13));
+            }
         }
     }
 }

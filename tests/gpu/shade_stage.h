@@ -52,7 +52,8 @@ void shade_triangle(uint32_t k);
 // What virtual light k has of the medium on its ways: its grid is no other's.
 double shade_vpl_density(uint32_t k);
 void shade_draw(gpu_test *t);
-extern const uint32_t (*shade_radiance)[2]; // what was drawn, a texel a sample
+// Of a pixel that shows two pieces, as it is stored: 0 or 1, m.
+double shade_group_distance(int x, int y, int group);
 
 // Where the ray through a place of the picture (pixels) meets a piece's plane; returns the distance.
 double shade_meet(const shade_piece *on, double x, double y, double p[3]);

@@ -304,7 +304,7 @@ static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_
     if (strncmp(k->name, "raymarch_", 9) == 0 && spec[RAYMARCH_SPEC_FEATURES] & rays) {
         spec[RAYMARCH_SPEC_FEATURES] |= rays;
     }
-    if (strcmp(k->name, "shade_surface") == 0 && spec[SHADE_SPEC_SAMPLES] > 1) {
+    if (strcmp(k->name, "shade_surface") == 0) {
         spec[SHADE_SPEC_FEATURES] |= SHADE_PIXELS | SHADE_EDGES;
     }
 }

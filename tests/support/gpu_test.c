@@ -159,7 +159,7 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
     VkFormat format = channels == -1   ? VK_FORMAT_R16_SFLOAT
                       : channels == 1  ? VK_FORMAT_R32_SFLOAT
                       : channels == 2  ? VK_FORMAT_R32G32_SFLOAT
-                      : channels == -2 ? VK_FORMAT_R32G32_UINT
+                      : channels == -2 ? VK_FORMAT_R32_UINT
                       : channels == -4 ? VK_FORMAT_R32G32B32A32_UINT
                                        : VK_FORMAT_R32G32B32A32_SFLOAT;
     if (channels == -1) {
@@ -170,7 +170,7 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
         }
         p->data = half;
     } else {
-        p->bytes = texels * (size_t)abs(channels) * 4;
+        p->bytes = texels * (channels == -2 ? 4 : (size_t)abs(channels) * 4);
         p->data = malloc(p->bytes);
         memcpy(p->data, data, p->bytes);
     }

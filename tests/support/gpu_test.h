@@ -37,7 +37,7 @@ const void *gpu_map(gpu_test *t, const char *name);
 uint32_t gpu_non_finite(gpu_test *t);
 
 // Uploads float data as an image (format R32F, RG32F, RGBA32F by channels 1, 2, 4; R16F: channels = -1;
-// RG32UI, RGBA32UI: -2, -4, words a texel).
+// R32UI, RGBA32UI: -2, -4).
 tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent, int channels,
                   const float *data);
 tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size);

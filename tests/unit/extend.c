@@ -79,7 +79,7 @@ static void layout(void **state)
             changed++;
         }
     }
-    assert_int_equal(TYN_EXTEND_ABI, 16);
+    assert_int_equal(TYN_EXTEND_ABI, 17);
     assert_int_equal(changed, 0);
 }
 

@@ -55,10 +55,10 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
     X(CONSTELLATION, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "latitude-longitude map, W/(m^2 sr)"), \
     X(CONSTELLATION, HOST_DEPTH, host_depth, OPTIONAL, IMAGE_2D, "hardware depth of the host's surfaces"), \
     X(CONSTELLATION, SURFACE, surface, OPTIONAL, IMAGE_2D, \
-        "radiance of the first surface, packed (packed_colour.glsl); n x n samples a pixel", \
-        .format = VK_FORMAT_R32G32_UINT), \
-    X(CONSTELLATION, DISTANCES, distances, OPTIONAL, IMAGE_2D, \
-        "distance of the first surface along the ray, m, or 0: none; rays end there; n x n samples a pixel"), \
+        "piece_light.glsl: radiance of the first surfaces, and distance: rays end there", \
+        .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(CONSTELLATION, SEEN, seen, OPTIONAL, IMAGE_2D, "gbuffer.glsl: share of the pixel that each has", \
+        .format = VK_FORMAT_R32_UINT), \
     X(CONSTELLATION, RADIANCE, radiance, OUT, RGBA_2D, \
         "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen"), \
     X(CONSTELLATION, TRANSMITTANCE, transmittance, OUT, RGBA_2D, \

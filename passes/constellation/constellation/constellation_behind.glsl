@@ -32,7 +32,7 @@ behind behind_pixel(ivec2 pixel, vec3 direction)
         uint left = ~0u;
         [[unroll]] for (uint i = 0u; i < BEHIND_MAX; i++) {
             // The last one has all that are left at about one distance.
-            surface_group group = surface_group_from(camera, pixel, left, i + 1u < BEHIND_MAX);
+            surface_group group = surface_group_from(pixel, left, i + 1u < BEHIND_MAX);
             if (b.open > 1e-3 && group.mean.a < b.host) {
                 b.away[i] = group.mean.a;
                 b.share[i] = group.share;

@@ -31,7 +31,7 @@ layout(binding = 11) uniform sampler2D env_map_wrapped;
 layout(binding = 12) uniform sampler2D host_depth_tex;
 layout(binding = 13) uniform sampler2D mask_tex;
 #define SURFACE_RADIANCE 14
-#define SURFACE_DISTANCES 15
+#define GBUFFER_AT 15
 #include "shaders/march/background.glsl"
 #include "shaders/march/host_depth.glsl"
 #include "shaders/march/surface_samples.glsl"

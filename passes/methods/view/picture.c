@@ -191,7 +191,7 @@ tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_input
         [RAYMARCH_PORT_GLOW] = in->glow,
         [RAYMARCH_PORT_HOST_DEPTH] = job->refs.depth,
         [RAYMARCH_PORT_SURFACE] = in->surface,
-        [RAYMARCH_PORT_DISTANCES] = in->distances,
+        [RAYMARCH_PORT_SEEN] = in->seen,
     };
     tyn_connect(refs, RAYMARCH_PORT_MEDIUM, in->sources->medium);
     refs[RAYMARCH_PORT_MEDIUM] = job->refs.medium; // also without media

@@ -26,16 +26,14 @@ static int32_t add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     tyn_settings_params(job->settings, &tyn_pass_gbuffer, &params);
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
-    fit_samples(&params, tyn_graph_drawn_side(g), job);
     params.num_triangles = job->frame->num_triangles;
-    params.textured = job->frame->num_textures > 0;
+    fit_samples(&params, tyn_graph_drawn_side(g), job);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [GBUFFER_PORT_CAMERA] = job->refs.camera,
     };
     tyn_connect(refs, GBUFFER_PORT_SURFACES, job->refs.geometry);
-    tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
-    tyn_take(refs, GBUFFER_PORT_DISTANCES, *gbuffer);
+    tyn_take(refs, GBUFFER_PORT_SEEN, *gbuffer);
     return params.samples;
 }
 
@@ -45,15 +43,14 @@ void tyn_add_guides(tyn_graph *g, const tyn_job *job)
         return;
     }
     tyn_guides_params params = {.size = {job->view->width, job->view->height},
-                                .samples = 1,
                                 .textured = job->frame->num_textures > 0};
     tyn_ref refs[TYN_MAX_PORTS] = {[GUIDES_PORT_CAMERA] = job->refs.camera};
     if (job->frame->num_triangles) {
         tyn_gbuffer_refs seen;
-        params.samples = add_gbuffer(g, job, &seen);
+        add_gbuffer(g, job, &seen);
         tyn_connect(refs, GUIDES_PORT_SURFACES, job->refs.geometry);
         tyn_connect(refs, GUIDES_PORT_MATERIALS, job->refs.materials);
-        tyn_connect(refs, GUIDES_PORT_DISTANCES, seen);
+        tyn_connect(refs, GUIDES_PORT_SEEN, seen);
     }
     tyn_graph_add(g, &tyn_pass_guides, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_ALBEDO, refs[GUIDES_PORT_ALBEDO]);
@@ -99,7 +96,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         return;
     }
     tyn_gbuffer_refs seen;
-    add_gbuffer(g, job, &seen);
+    const bool several = add_gbuffer(g, job, &seen) > 1;
     const float *sky = job->frame->environment.sky;
     tyn_shade_params params;
     tyn_settings_params(job->settings, &tyn_pass_shade, &params);
@@ -131,6 +128,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.hidden = params.outside && tyn_can_trace(job);
     params.textured = job->frame->num_textures > 0;
     params.parted = job->capacity.software;
+    params.several = several;
     if (params.outside) {
         place_sight(job->frame, &params);
     }
@@ -155,7 +153,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
                                    : (tyn_ref){0},
         [SHADE_PORT_ROOMS] = in->sources->surface_light.rooms,
     };
-    tyn_connect(refs, SHADE_PORT_DISTANCES, seen);
+    tyn_connect(refs, SHADE_PORT_SEEN, seen);
     tyn_connect(refs, SHADE_PORT_BEAMS, in->sources->beams);
     tyn_connect(refs, SHADE_PORT_RADIALS, in->sources->lamps.radials);
     tyn_connect(refs, SHADE_PORT_SHADOW_ATLAS, in->sources->shadows);
@@ -172,7 +170,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     tyn_connect(refs, SHADE_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_SURFACE_RADIANCE];
-    in->distances = seen.distances;
+    in->seen = seen.seen;
 }
 
 void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn_view_inputs *view)
@@ -199,5 +197,5 @@ void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn
     }
     tyn_add_surfaces(g, job, &surfaces);
     view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
+    view->seen = surfaces.seen;
 }

@@ -10,7 +10,7 @@
 
 // Rises whenever anything in the headers of this folder, in a struct that they hold, or in what the GLSL under shaders/ reads
 // changes its meaning, or a block of the GLSL its layout. A plugin of another number is refused when it is loaded.
-#define TYN_EXTEND_ABI 16u
+#define TYN_EXTEND_ABI 17u
 
 // clang-format off
 // The sizes of all structs that a plugin and the library both know, in one number: what differs in them is refused even if

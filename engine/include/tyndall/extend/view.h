@@ -16,9 +16,10 @@ typedef struct tyn_view_inputs {
     tyn_ref inscatter;      // the field, towards the eye (tyn_gather)
     // Lamps that are marched everywhere, the first of `sources`, and those after them that are marched nearby.
     uint32_t num_marched_lamps, num_near_lamps;
-    bool no_sky_on_surfaces;    // it is not known what hides of it
-    bool mean_in_field;         // the environment's mean came in through the field
-    tyn_ref surface, distances; // radiance and distances of the surfaces before the camera
+    bool no_sky_on_surfaces; // it is not known what hides of it
+    bool mean_in_field;      // the environment's mean came in through the field
+    tyn_ref surface,
+        seen; // light of the surfaces before the camera (piece_light.glsl); gbuffer.glsl
 } tyn_view_inputs;
 
 // What scatters forward more than once, as tables by depth and angle.
