@@ -100,17 +100,17 @@ static tyn_result declare(tyn_builder *b, const void *params)
             tyn_build_image(b, layers[i].port, size, 1);
         }
     }
-    tyn_extent nodes = {0, 0, 1};
+    tyn_extent texels = {1, 1, 1};
     uint64_t pixels = 0;
     if (is_sparse(p)) {
         // As large as for all pixels: the window follows the camera, and frames must keep their sizes.
-        nodes = (tyn_extent){(p->width + 1) / 2, (p->height + 1) / 2, 1};
+        const uint32_t orders = RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
+        const uint32_t rows = (p->height + 1) / 2, below = p->layers & orders ? 2 : 1;
+        texels = (tyn_extent){2 * ((p->width + 1) / 2), rows + below * ((rows + 1) / 2), 1};
         pixels = (uint64_t)p->width * p->height;
     }
-    tyn_build_image(b, RAYMARCH_PORT_SPARSE,
-                    (tyn_extent){nodes.x ? 2 * nodes.x : 1, nodes.y ? 2 * nodes.y : 1, 1}, 1);
-    tyn_build_buffer(b, RAYMARCH_PORT_REST,
-                     2 * sizeof(struct raymarch_rest) + 4 * ((uint64_t)nodes.x * nodes.y + pixels));
+    tyn_build_image(b, RAYMARCH_PORT_SPARSE, texels, 1);
+    tyn_build_buffer(b, RAYMARCH_PORT_REST, 2 * sizeof(struct raymarch_rest) + 4 * pixels);
     return TYN_OK;
 }
 
@@ -218,8 +218,6 @@ static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dis
     const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
     const struct raymarch_rest empty[2] = {none, none};
     tyn_rec_update(r, RAYMARCH_PORT_REST, 0, empty, sizeof empty);
-    args->lists[0] = 0;
-    args->lists[1] = ((p->width + 1) / 2) * ((p->height + 1) / 2);
     args->rays = RAYMARCH_ALL_NODES;
     rays.cells = grid_of(p, RAYMARCH_NODES);
     rays.label = "sparse rays";

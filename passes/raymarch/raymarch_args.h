@@ -52,14 +52,14 @@ struct raymarch_args {
     tyn_uvec2 end;    // ... to before `end`
     tyn_vec3 tint;    // of the one channel of inscatter
     float reach;      // of lamps that are marched nearby only, m (radial_reach)
-    tyn_uvec2 lists;  // where the lists in the buffer "rest" begin: of nodes, and of pixels
     tyn_uint rays;    // sparse: RAYMARCH_ALL_NODES, ...
     float noise;      // by how much along an axis at most, m
     float noise_size; // of the largest features, m
 };
-TYN_ASSERT_SIZE(raymarch_args, 84);
+TYN_ASSERT_SIZE(raymarch_args, 76);
 
-// Start of the buffer "rest", twice: of nodes, and of pixels that need rays of their own. The lists follow: x | y << 16.
+// Start of the buffer "rest", twice: of nodes, and of pixels that need rays of their own. A list follows: x | y << 16; when pixels
+// are listed, nodes have had their rays.
 struct raymarch_rest {
     tyn_uvec3 groups; // of threads, for an indirect dispatch
     tyn_uint count;

@@ -45,7 +45,7 @@ layout(binding = 37, rgba32f) uniform image2D sparse_image;
 layout(binding = 38, scalar) buffer rest_buffer
 {
     raymarch_rest head[2];
-    uint pixels[];
+    uint places[];
 } sparse_rest;
 
 TYN_ARGS(raymarch_args args);

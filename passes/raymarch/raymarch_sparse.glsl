@@ -21,7 +21,7 @@ const float SPARSE_DISTANCE_TOLERANCE = 0.03;
 // shadow that is narrower than a cell.
 const uint SPARSE_BESIDE = 2u;
 
-// What is kept of the ray of a node: four texels. Nodes are counted from args.first on, two pixels apart.
+// What is kept of the ray of a node: three texels, or four. Nodes are counted from args.first on, two pixels apart.
 // SPARSE_RADIANCE.a: -1 if one ray cannot stand for the pixel, 2 if its coarse cell is interpolated, else 1 and a 1024th for each
 // edge of a shadow that the ray crosses; SPARSE_THIN more if a shaft or a shadow beside it is narrower than a cell.
 const float SPARSE_THIN = 0.25;
@@ -33,10 +33,13 @@ const int SPARSE_SINGLE = 3;         // light that has scattered once, where a l
 // It is interpolated where the picture is smooth, whether it is smooth itself or not.
 #define SPARSE_HAS_SINGLE raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)
 
-// The image has no more texels than the picture, at whose size other images may have reached what the device can hold.
+// The image is no larger than the picture, at whose size other images may have reached what the device can hold: two texels of nodes
+// beside each other, below them the third ones of two rows in one, and the fourth ones, if there are any.
 ivec2 sparse_texel(ivec2 node, int k)
 {
-    return 2 * node + ivec2(k & 1, k >> 1);
+    ivec2 nodes = (imageSize(radiance_image) + 1) / 2;
+    ivec2 below = ivec2(node.x + (node.y & 1) * nodes.x, nodes.y + (k - 2) * ((nodes.y + 1) / 2) + node.y / 2);
+    return k < 2 ? ivec2(2 * node.x + k, node.y) : below;
 }
 
 vec4 sparse_load(ivec2 node, int k)
@@ -235,7 +238,7 @@ void list_places(int which, ivec2 places[4], uint count)
 {
     uint first = atomicAdd(sparse_rest.head[which].count, count);
     for (uint i = 0u; i < count; i++) {
-        sparse_rest.pixels[args.lists[which] + first + i] = uint(places[i].x) | uint(places[i].y) << 16;
+        sparse_rest.places[first + i] = uint(places[i].x) | uint(places[i].y) << 16;
     }
     atomicMax(sparse_rest.head[which].groups.y, (first + count - 1u) / (64u * RAYMARCH_REST_GROUPS) + 1u);
 }
@@ -244,7 +247,7 @@ void list_places(int which, ivec2 places[4], uint count)
 bool listed_place(int which, uint i, out ivec2 place)
 {
     bool is = i < sparse_rest.head[which].count;
-    uint at = is ? sparse_rest.pixels[args.lists[which] + i] : 0u;
+    uint at = is ? sparse_rest.places[i] : 0u;
     place = ivec2(at & 0xffffu, at >> 16);
     return is;
 }
