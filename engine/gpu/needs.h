@@ -8,7 +8,7 @@
 #define TYN_NEED_REFUSED                                                                           \
     "a kernel that binds more than the device takes is refused when a scene needs it"
 #define TYN_NEED_LARGER "a scene that needs a larger one is refused in a line that names it"
-#define TYN_MOST_SIDE 16384 // of pictures, pixels
+#define TYN_MOST_SIDE 16384                                             // of pictures, pixels
 #define TYN_NEED_BY_KIND "262144 if such a card is discrete, else 8192" // capacity.c
 
 // What a row is for, and the fallback without it; NULL: none, the device cannot be used.
@@ -40,7 +40,7 @@
     LIMIT(maxComputeSharedMemorySize, 32768, "coarse levels of the lattice in one workgroup", "fewer cells in it") \
     LIMIT(maxPerStageDescriptorStorageImages, 11, "most images that a kernel writes", TYN_NEED_REFUSED) \
     LIMIT(maxPerStageDescriptorStorageBuffers, 10, "most buffers of a kernel", TYN_NEED_REFUSED) \
-    LIMIT(maxPerStageDescriptorSampledImages, 28, "most images and texel buffers that a kernel reads", TYN_NEED_REFUSED) \
+    LIMIT(maxPerStageDescriptorSampledImages, 27, "most images and texel buffers that a kernel reads", TYN_NEED_REFUSED) \
     LIMIT(maxPerStageDescriptorSamplers, 18, "most images that a kernel filters", TYN_NEED_REFUSED) \
     F12(separateDepthStencilLayouts, 0, PHYSICAL_DEVICE_SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "a host's depth without its stencil", "a host names both aspects of its image") \
     EXTENSION(VK_NV_shader_sm_builtins, "threads that a card of NVIDIA holds at once", TYN_NEED_BY_KIND) \

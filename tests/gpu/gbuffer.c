@@ -282,8 +282,8 @@ static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image
     }
     // A group spans less than all of them do, if that is much.
     for (int g = 0; mixed && g < 2; g++) {
-        assert_true(!(range[g][1] > 1.1 * range[g][0]) ||
-                    range[g][1] / range[g][0] <= 1.0001 * sqrt(farthest / nearest));
+        assert_true(range[g][1] <= 1.1 * range[g][0] ||
+                    range[g][1] <= 1.0001 * sqrt(farthest / nearest) * range[g][0]);
     }
     expect_near(got->normal[pixel], normal, what == WHOLE && count > 1 ? 1e-3f : 1e-4f, "normal",
                 pixel);
