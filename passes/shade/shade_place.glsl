@@ -11,22 +11,20 @@ shade_point shade_place(ivec2 block, out shade_part part)
     bool none = gbuffer_is_none(found);
     for (int k = 1; k < shade_step * shade_step && (gbuffer_is_several(found) || none); k++) {
         gbuffer_pixel other = shade_pixel(min(pixel + ivec2(k % shade_step, k / shade_step), last));
-        if (gbuffer_is_none(other) ? false : !gbuffer_is_several(other) || none) {
+        if (!gbuffer_is_none(other) && (!gbuffer_is_several(other) || none)) {
             found = other;
             none = false;
         }
     }
-    gbuffer_point p = gbuffer_point(0.0, camera.origin, vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), true);
     bool several = gbuffer_is_several(found);
-    if (several) {
-        int count = found.side * found.side, nearest = found.side / 2 * (found.side + 1);
-        for (int k = 0; k < count && gbuffer_index(found, nearest) == 0u; k++) {
-            nearest = nearest + 1 < count ? nearest + 1 : 0;
-        }
-        p = gbuffer_sample(found, nearest, gbuffer_index(found, nearest));
-    } else if (!none) {
-        uint members;
-        p = gbuffer_piece(found, gbuffer_all(found), members);
+    int count = found.side * found.side, nearest = found.side / 2 * (found.side + 1);
+    for (int k = 0; k < count && several && gbuffer_index(found, nearest) == 0u; k++) {
+        nearest = nearest + 1 < count ? nearest + 1 : 0;
+    }
+    gbuffer_point p = gbuffer_point(0.0, camera.origin, vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), true);
+    if (!none) {
+        vec2 at = several ? gbuffer_place(found, nearest) : vec2(found.at) + 0.5;
+        p = gbuffer_point_of(gbuffer_triangle_of(gbuffer_index(found, nearest) - 1u), camera_ray_through(camera, at));
     }
     camera_ray ray = camera_ray_through(camera, shade_middle(block));
     float facing = dot(ray.direction, p.facet), distance = dot(p.at - ray.origin, p.facet) / facing;
