@@ -41,7 +41,7 @@
     LIMIT(maxPerStageDescriptorStorageImages, 11, "most images that a kernel writes", TYN_NEED_REFUSED) \
     LIMIT(maxPerStageDescriptorStorageBuffers, 10, "most buffers of a kernel", TYN_NEED_REFUSED) \
     LIMIT(maxPerStageDescriptorSampledImages, 27, "most images and texel buffers that a kernel reads", TYN_NEED_REFUSED) \
-    LIMIT(maxPerStageDescriptorSamplers, 18, "most images that a kernel filters", TYN_NEED_REFUSED) \
+    LIMIT(maxPerStageDescriptorSamplers, 17, "most images that a kernel filters", TYN_NEED_REFUSED) \
     F12(separateDepthStencilLayouts, 0, PHYSICAL_DEVICE_SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES, "a host's depth without its stencil", "a host names both aspects of its image") \
     EXTENSION(VK_NV_shader_sm_builtins, "threads that a card of NVIDIA holds at once", TYN_NEED_BY_KIND) \
     EXTENSION(VK_AMD_shader_core_properties, "threads that a card of AMD holds at once", TYN_NEED_BY_KIND) \
