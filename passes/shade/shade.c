@@ -66,7 +66,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(PART_ROWS), blocks, 1);
     const uint64_t pixels = (uint64_t)p->size[0] * p->size[1];
     tyn_build_buffer(b, PORT(EDGE_COUNT), sizeof(struct gbuffer_edge_count));
-    tyn_build_buffer(b, PORT(EDGES), 4 * (p->several ? pixels : 1));
+    tyn_build_buffer(b, PORT(EDGES), 4 * (p->samples > 1 ? pixels : 1));
     const bool alone = vpls || step > 1;
     tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? pixels : 1));
@@ -108,7 +108,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t shorter = of_whole.x < of_whole.y ? of_whole.x : of_whole.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
-    uint32_t spec[5] = {p->mode, features, p->num_suns, side, step};
+    uint32_t spec[6] = {p->mode, features, p->num_suns, side, step, p->samples};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
@@ -160,9 +160,9 @@ static void record(tyn_recorder *r, const void *data)
     d.kernel = KERNEL_SURFACE;
     d.cells = pixels;
     d.ports = tyn_ports_exchanged(&kernels[KERNEL_SURFACE], looked_up, 1, bound[0]);
-    spec[1] = features | (p->parted || !p->several ? SHADE_PIXELS : both);
+    spec[1] = features | (p->parted || p->samples == 1 ? SHADE_PIXELS : both);
     tyn_rec_dispatch(r, &d);
-    if (p->several) {
+    if (p->samples > 1) {
         spec[1] = features | (p->parted ? SHADE_EDGES : both);
         args.listed = 1;
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);

@@ -12,6 +12,8 @@ layout(constant_id = 1) const uint shade_features = 0u;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
 layout(constant_id = 3) const int shade_side = SHADE_SIDE; // of the pattern
 layout(constant_id = 4) const int shade_step = 1; // pixels along each side of a block: shade_part.glsl
+layout(constant_id = 5) const int shade_samples = 2; // of the G-buffer along each side of a pixel
+#define GBUFFER_SIDE shade_samples
 TYN_ARGS(shade_args args);
 
 #define MEDIUM_BLOCK 0

@@ -29,7 +29,7 @@ typedef struct tyn_shade_params {
     uint32_t sight_places[3];
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
-    uint32_t several;  // 1: pixels may show several pieces of surface, as they have several samples
+    uint32_t samples;  // of the G-buffer, along each side of a pixel
     uint32_t parted;   // as tyn_raymarch_params.parted, of pixels and of those that are listed
     uint32_t sky_fan;  // directions of an ordinate
     uint32_t sky_cells

@@ -6,7 +6,8 @@
 // Samples of a pixel lie on one piece of surface, or on several. Their light is stored for two groups of them: a piece each, or
 // what is near and what is far (piece_light.glsl).
 //
-// Define GBUFFER_AT as the binding of the bundle TYN_GBUFFER (bundles.h) to read it.
+// Define GBUFFER_AT as the binding of the bundle TYN_GBUFFER (bundles.h) to read it, and GBUFFER_SIDE where the samples along each side
+// of a pixel are a constant: a quotient takes a CPU device long.
 #ifndef TYN_GBUFFER_GLSL
 #define TYN_GBUFFER_GLSL
 
@@ -91,7 +92,11 @@ layout(binding = GBUFFER_AT, r32ui) uniform readonly uimage2D seen_image;
 // `width` of the picture, pixels.
 gbuffer_pixel gbuffer_pixel_at(ivec2 at, uint width)
 {
+#ifdef GBUFFER_SIDE
+    const int side = GBUFFER_SIDE;
+#else
     int side = imageSize(seen_image).x / int(width);
+#endif
     return gbuffer_pixel(at, side, imageLoad(seen_image, at * side).r);
 }
 

@@ -334,7 +334,7 @@ void shade_draw(gpu_test *t)
             make_triangle(SEEN + k, k);
         }
     }
-    stage.params.several = stage.samples > 1;
+    stage.params.samples = (uint32_t)stage.samples;
     struct surface_block surfaces = {.num_triangles = 2, .num_nodes = stage.params.hidden ? 1 : 0};
     struct surface_material materials[2] = {{.flags = 0}};
     for (int i = 0; i < 3; i++) {

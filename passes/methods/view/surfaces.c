@@ -96,7 +96,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         return;
     }
     tyn_gbuffer_refs seen;
-    const bool several = add_gbuffer(g, job, &seen) > 1;
+    const int32_t samples = add_gbuffer(g, job, &seen);
     const float *sky = job->frame->environment.sky;
     tyn_shade_params params;
     tyn_settings_params(job->settings, &tyn_pass_shade, &params);
@@ -128,7 +128,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.hidden = params.outside && tyn_can_trace(job);
     params.textured = job->frame->num_textures > 0;
     params.parted = job->capacity.software;
-    params.several = several;
+    params.samples = (uint32_t)samples;
     if (params.outside) {
         place_sight(job->frame, &params);
     }
