@@ -155,18 +155,30 @@ static uint64_t hash_pass(uint64_t h, const char *name)
     return h;
 }
 
-uint64_t reference_key(const tyn_scene *scene, const tyn_view *view)
+// What makes references, with the number that names of its files begin to be hashed from.
+static const struct {
+    uint32_t output;
+    const char *pass;
+    uint64_t seed;
+} made_by[] = {{TYN_OUTPUT_RADIANCE, "path", 0x80b8f9a85f7996d1ull},
+               {TYN_OUTPUT_PROBE, "path_probe", 0x40fc424385ac29a3ull},
+               {TYN_OUTPUT_BALANCE, "path_balance", 0x8ec160ef4216eb67ull},
+               {TYN_OUTPUT_FLUXES, "path_fluxes", 0x5a8d68e684f79839ull}};
+
+static uint64_t hash_kernels(void)
 {
-    static const struct {
-        uint32_t output;
-        const char *pass;
-    } made_by[] = {{TYN_OUTPUT_RADIANCE, "path"},
-                   {TYN_OUTPUT_PROBE, "path_probe"},
-                   {TYN_OUTPUT_BALANCE, "path_balance"},
-                   {TYN_OUTPUT_FLUXES, "path_fluxes"}};
     uint64_t h = hash_pass(TYN_HASH_SEED, "medium");
     for (size_t i = 0; i < sizeof made_by / sizeof *made_by; i++) {
-        h = view->outputs & made_by[i].output ? hash_pass(h, made_by[i].pass) : h;
+        h = hash_pass(h, made_by[i].pass);
+    }
+    return h;
+}
+
+uint64_t reference_key(const tyn_scene *scene, const tyn_view *view)
+{
+    uint64_t h = 0;
+    for (size_t i = 0; i < sizeof made_by / sizeof *made_by; i++) {
+        h ^= view->outputs & made_by[i].output ? made_by[i].seed : 0;
     }
     h = hash_media(h, scene);
     h = hash_grids(h, scene);
@@ -178,27 +190,71 @@ uint64_t reference_key(const tyn_scene *scene, const tyn_view *view)
 
 // ---- files ------------------------------------------------------------------------------------
 
+// What tools/references asks for by TYN_REFERENCES: nothing, or this.
+static bool asks_to(const char *what)
+{
+    const char *mode = getenv("TYN_REFERENCES");
+    return mode && !strcmp(mode, what);
+}
+
+static const char kernels_name[] = TYN_REFERENCES_DIR "/kernels";
+
+// The hash of the kernels that made all files; 0: there are none.
+static uint64_t noted_kernels(void)
+{
+    FILE *f = fopen(kernels_name, "r");
+    unsigned long long noted = 0;
+    const bool whole = f && fscanf(f, "%llx", &noted) == 1;
+    if (f) {
+        fclose(f);
+    }
+    return whole ? noted : 0;
+}
+
+static void note_kernels(void)
+{
+    FILE *f = fopen(kernels_name, "w");
+    assert_non_null(f);
+    fprintf(f, "%016llx\n", (unsigned long long)hash_kernels());
+    assert_int_equal(fclose(f), 0);
+}
+
 static void file_of(uint64_t key, const char *ending, char path[512])
 {
     snprintf(path, 512, "%s/%016llx.%s", TYN_REFERENCES_DIR, (unsigned long long)key, ending);
 }
 
-// The file of a key, if it is to be read. tools/references sets TYN_REFERENCES=write.
-static bool find(uint64_t key, const char *ending, char path[512])
+static bool exists(const char *path)
 {
-    file_of(key, ending, path);
-    const char *mode = getenv("TYN_REFERENCES");
-    FILE *f = mode && !strcmp(mode, "write") ? NULL : fopen(path, "rb");
+    FILE *f = fopen(path, "rb");
     if (f) {
         fclose(f);
     }
     return f != NULL;
 }
 
+// The file of a key, if it is to be read.
+static bool find(uint64_t key, const char *ending, char path[512])
+{
+    file_of(key, ending, path);
+    if (asks_to("note")) {
+        note_kernels();
+    }
+    return !asks_to("write") && noted_kernels() == hash_kernels() && exists(path);
+}
+
+// Is a reference that was rendered anew to be written?
 static bool is_written(void)
 {
-    const char *mode = getenv("TYN_REFERENCES");
-    return mode && !strcmp(mode, "write");
+    const uint64_t noted = noted_kernels();
+    if (!asks_to("write")) {
+        return false;
+    }
+    if (noted && noted != hash_kernels()) {
+        fail_msg("the kernels of path have changed: renew all references (tools/references)");
+    }
+    note_kernels();
+    return true;
 }
 
 enum { CHANNELS = 6 };

@@ -1,8 +1,8 @@
 // references.h -- what `path` finds, kept in tests/references: rendered once, read in every later run.
 //
-// A reference is keyed by everything that makes it: scene, view with its samples and seed, and the kernels of `path`. A
-// key without a file renders anew and says so. The test golden-path guards the code between scene and kernels.
-// tools/references renews all files.
+// A reference is keyed by its scene and view with samples and seed; the kernels of `path` that made all files are noted beside
+// them. A key without a file, or other kernels, render anew and say so. The test golden-path guards the code between scene and
+// kernels. tools/references renews all files.
 #pragma once
 #include "picture.h"
 #include <stddef.h>
