@@ -101,6 +101,7 @@ static void record(tyn_recorder *r, const void *data)
     features |= sky_maps && tyn_rec_has(r, PORT(COLUMNS)) && p->sky_cells[0] ? SHADE_COLUMNS : 0;
     features |= p->num_lamps ? SHADE_LAMPS : 0;
     features |= p->textured ? SHADE_TEXTURED : 0;
+    features |= p->parted ? 0 : SHADE_SLICED;
     const uint32_t rooms = tyn_rec_has(r, PORT(ROOMS));
     features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
     const uint32_t step = step_of(p, shared || tyn_rec_has(r, PORT(MOMENTS)));

@@ -28,6 +28,7 @@
 // shade_surface.comp: every pixel, or those that are listed; with both bits args.listed tells which.
 #define SHADE_PIXELS (1u << 13)
 #define SHADE_EDGES (1u << 14)
+#define SHADE_SLICED (1u << 15) // threads share the light of a listed place
 
 // Light of which the pixels of a pattern each take a part.
 #define SHADE_SHARED (SHADE_VPLS | SHADE_SKY_MAPS)
@@ -44,8 +45,9 @@
 // Widths w of a pixel: VPLs nearer than that, and smaller, are near. What a VPL at the height h sends to a plane,
 // h^2 / (h^2 + x^2)^2, is linear between pixels of the pattern that are 5 w apart but for 5^2 / 8 x 4 w^2 / h^2 of it: 3 %.
 #define SHADE_VPL_NEAR 20.0
-#define SHADE_MOST 8 // VPLs that a pixel takes in any case
-#define SHADE_MANY 4 // pixels that a thread takes VPLs at
+#define SHADE_MOST 8   // VPLs that a pixel takes in any case
+#define SHADE_MANY 4   // pixels that a thread takes VPLs at
+#define SHADE_SLICES 8 // threads that share the light of a listed place: rows of a workgroup
 
 struct shade_args {
     tyn_uint num_directional; // lights before the lamps in "lights"

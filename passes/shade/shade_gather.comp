@@ -27,7 +27,7 @@ void main()
     sum.whole = true;
     sum.aside = false;
     if (alone) {
-        shade_list_alone(block, 0u, uint(SHADE_MANY));
+        shade_list_alone(block, 0u, shade_has(SHADE_SLICED) ? SHADE_SLICES : 1u, uint(SHADE_MANY));
     }
     imageStore(part_image, block, shade_pack(sum));
 }

@@ -97,6 +97,6 @@ void main()
     light[1] = piece_light_mean(light[1], bitCount(groups.second));
     imageStore(surface_radiance_image, pixel, piece_light_pack(light[0], light[1], groups.second != 0u));
     if (alone != 0u) {
-        shade_list_alone(pixel, alone, 1u);
+        shade_list_alone(pixel, alone, 1u, 1u);
     }
 }

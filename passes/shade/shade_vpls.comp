@@ -2,7 +2,8 @@
 //
 // First every block takes a part of them. Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002,
 // interleaved sampling), and shade_rows.comp and shade_gather.comp sum over the pattern. A thread has several blocks of one place in
-// the pattern. Then blocks that shade_gather.comp lists take all of that light (args.listed).
+// the pattern. Then blocks that shade_gather.comp lists take all of that light (args.listed). There are too few of them to keep a
+// card busy: threads of a column share it (SHADE_SLICED).
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 #define SHADE_SKY_AT (SHADE_AT + 3)
@@ -12,15 +13,21 @@
 #define SHADE_ALONE_TAKEN
 #include "shade_alone.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = GBUFFER_EDGES / SHADE_SLICES, local_size_y = SHADE_SLICES) in;
 
 layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D part_image; // shade_part.glsl
+
+shared vec4 slices[GBUFFER_EDGES * SHADE_MANY]; // of each block: light, and nearest
 
 void main()
 {
     bool listed = args.listed != 0u;
-    uint n = gbuffer_edge() * uint(SHADE_MANY), count = listed ? alone_count.count : 0u, of_pattern = gl_WorkGroupID.z;
-    if (listed && n >= count) {
+    uint n = gbuffer_edge(), count = listed ? alone_count.count : 0u, of_pattern = gl_WorkGroupID.z;
+    if (shade_has(SHADE_SLICED)) { // a column of threads for a thread's blocks
+        n = n / GBUFFER_EDGES * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+    }
+    n *= uint(SHADE_MANY);
+    if (listed && n >= count && !shade_has(SHADE_SLICED)) {
         return;
     }
     ivec2 cell = ivec2(of_pattern % shade_side, of_pattern / shade_side), size = shade_blocks();
@@ -45,8 +52,8 @@ void main()
     uint parts = sky ? side * side : vpls <= SHADE_MOST ? 1u : vpls <= SHADE_MOST * side ? side : side * side;
     uint part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : of_pattern;
     if (listed) {
-        part_of = 0u;
-        parts = 1u;
+        part_of = shade_has(SHADE_SLICED) ? gl_LocalInvocationID.y : 0u;
+        parts = shade_has(SHADE_SLICED) ? gl_WorkGroupSize.y : 1u;
     }
     float nearest[SHADE_MANY] = float[](1e30, 1e30, 1e30, 1e30);
     vec3 light[SHADE_MANY] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
@@ -59,8 +66,22 @@ void main()
             light[i] += others[i];
         }
     }
+    if (listed && shade_has(SHADE_SLICED)) { // the sums over a column
+        uint first = gl_LocalInvocationID.x * uint(SHADE_MANY), row = gl_WorkGroupSize.x * uint(SHADE_MANY);
+        [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+            slices[gl_LocalInvocationID.y * row + first + uint(i)] = vec4(light[i], nearest[i]);
+            light[i] = vec3(0.0);
+        }
+        barrier();
+        for (uint at = first; at < gl_WorkGroupSize.y * row; at += row) {
+            [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+                light[i] += slices[at + uint(i)].rgb;
+                nearest[i] = min(nearest[i], slices[at + uint(i)].a);
+            }
+        }
+    }
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
-        if (listed ? n + uint(i) < count : all(lessThan(block[i], size))) {
+        if (listed ? n + uint(i) < count && part_of == 0u : all(lessThan(block[i], size))) {
             part[i].irradiance = part[i].along > 0.0 ? light[i] : vec3(0.0);
             part[i].near = part[i].along > 0.0 && shade_near(p[i], block[i], nearest[i]);
             imageStore(part_image, block[i], shade_pack(part[i]));

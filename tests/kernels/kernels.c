@@ -222,7 +222,7 @@ static limit known[] = {
     {"shade_surface", 204000, 0, 8, "all lights of a surface, of whole pixels and of pieces",
      false},
     {"shade_alone", 108500, 0, 8, "as shade_surface, without a list", false},
-    {"shade_vpls", 111500, 0, 4, "virtual lights with their lobes", false},
+    {"shade_vpls", 114000, 0, 4, "virtual lights with their lobes, and the sky", false},
 };
 enum { NUM_KNOWN = sizeof known / sizeof *known };
 
@@ -292,8 +292,8 @@ static size_t specialised_size(const tyn_kernel *k, const uint32_t *spec)
     return count * sizeof *words;
 }
 
-// Constants as a card has them: on a processor `path` keeps few triangles in registers, and `raymarch` and `shade` have a
-// kernel for what they list.
+// Constants as a card has them: on a processor `path` keeps few triangles in registers, `raymarch` and `shade` have a
+// kernel for what they list, and a thread of `shade` takes all light of what is listed.
 static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_t *spec)
 {
     memcpy(spec, from, k->num_spec * sizeof *spec);
@@ -303,6 +303,9 @@ static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_
     const uint32_t rays = RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_PIXELS;
     if (strncmp(k->name, "raymarch_", 9) == 0 && spec[RAYMARCH_SPEC_FEATURES] & rays) {
         spec[RAYMARCH_SPEC_FEATURES] |= rays;
+    }
+    if (strcmp(k->name, "shade_vpls") == 0 || strcmp(k->name, "shade_gather") == 0) {
+        spec[SHADE_SPEC_FEATURES] |= SHADE_SLICED;
     }
     if (strcmp(k->name, "shade_surface") == 0) {
         spec[SHADE_SPEC_FEATURES] |= SHADE_PIXELS | SHADE_EDGES;
