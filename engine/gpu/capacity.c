@@ -1,4 +1,4 @@
-// capacity.c -- how many threads a device holds at once.
+// capacity.c -- how many threads a device holds at once, and how long they may run.
 //
 // Vulkan itself does not tell. Extensions of three vendors do, as properties, which need not be enabled.
 #include "gpu/device.h"
@@ -53,16 +53,23 @@ static double threads_told(const tyn_procs *vk, VkPhysicalDevice device)
 
 tyn_capacity tyn_device_capacity(const tyn_procs *vk, VkPhysicalDevice device)
 {
-    VkPhysicalDeviceProperties2 known = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 known = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = &driver};
     vk->GetPhysicalDeviceProperties2(device, &known);
     const VkPhysicalDeviceType type = known.properties.deviceType;
     const bool little = !tyn_need_in(tyn_needs_limits(&known.properties.limits),
                                      TYN_NEED_maxComputeSharedMemorySize);
-    if (type == VK_PHYSICAL_DEVICE_TYPE_CPU) {
-        return (tyn_capacity){.software = true, .little_shared = little};
+    tyn_capacity c = {.software = type == VK_PHYSICAL_DEVICE_TYPE_CPU,
+                      .little_shared = little,
+                      .short_loops = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE};
+    if (c.software) {
+        return c;
     }
     const double told = threads_told(vk, device);
     const double by_type = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ? DISCRETE : OTHER;
     const double threads = fmin(fmax(told > 0 ? told : by_type, LEAST), MOST);
-    return (tyn_capacity){.little_shared = little, .threads = (uint32_t)exp2(round(log2(threads)))};
+    c.threads = (uint32_t)exp2(round(log2(threads)));
+    return c;
 }

@@ -64,10 +64,10 @@ struct path_counts { // of this thread
 };
 path_counts path_count = path_counts(0u, 0u, 0u, 0u);
 // Turns of this thread's loops, at most: one that no thread enters counts as well. A thread that has made PATH_TURNS
-// leaves the rest to others: on software devices eight that run together share a limit of 65535
+// leaves the rest to others: on lavapipe eight that run together share a limit of 65535
 // (docs/writing-a-pass.md, "Shaders"), and their turns add up where they differ.
 uint path_turns = 0u;
-const uint PATH_TURNS = (FLAGS & TYN_PATH_SOFTWARE) != 0u ? 6000u : 0xffffffffu;
+const uint PATH_TURNS = (FLAGS & TYN_PATH_SHORT_LOOPS) != 0u ? 6000u : 0xffffffffu;
 
 bool path_next(inout uint element, inout uint first, inout uint end);
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction);

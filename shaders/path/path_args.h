@@ -19,27 +19,27 @@
 #define TYN_PATH_ENV_CONSTANT 1
 #define TYN_PATH_ENV_MAP 2
 
-#define TYN_PATH_REPEAT 1u      // some axis is periodic
-#define TYN_PATH_EMISSIVE 2u    // some medium emits
-#define TYN_PATH_GUIDED 4u      // directions are drawn by where light comes from as well
-#define TYN_PATH_EQUIANGULAR 8u // lamps in or near the media: equi-angular distance sampling
-#define TYN_PATH_LAYERS 16u     // first-order light and transmittance are kept as well
-#define TYN_PATH_SPHERE 128u    // the only shape is a sphere
-#define TYN_PATH_LAMPS 64u      // some light is a point or spot light
-#define TYN_PATH_SCATTERED 32u  // probes leave out light that comes straight from its source
-#define TYN_PATH_SURFACES 256u  // there are triangles
-#define TYN_PATH_EMITTERS 512u  // ... and a table by which emissive ones are drawn
-#define TYN_PATH_TEXTURES 4096u // some materials have textures
-#define TYN_PATH_SOFTWARE                                                                          \
-    16384u                   // a processor: few triangles are kept in registers, loops have a limit
-#define TYN_PATH_QUEUE 8192u // images: threads take pieces of work one after another
-#define TYN_PATH_THIN 2048u  // first flights are stretched: args.stretch
-#define TYN_PATH_GLOW 32768u // some medium emits by a grid
-#define TYN_PATH_ALBEDO 65536u  // some medium has an albedo by a grid
-#define TYN_PATH_TABLED 131072u // some phase functions are tables
-#define TYN_PATH_ENDED 262144u  // images: paths end in a field that is given
-#define TYN_PATH_FIELD 524288u  // images: a field says where light comes from; else a light does
-#define TYN_PATH_ONE_PHASE 1048576u // the phase functions of all channels are equal
+#define TYN_PATH_REPEAT 1u       // some axis is periodic
+#define TYN_PATH_EMISSIVE 2u     // some medium emits
+#define TYN_PATH_GUIDED 4u       // directions are drawn by where light comes from as well
+#define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
+#define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
+#define TYN_PATH_SPHERE 128u     // the only shape is a sphere
+#define TYN_PATH_LAMPS 64u       // some light is a point or spot light
+#define TYN_PATH_SCATTERED 32u   // probes leave out light that comes straight from its source
+#define TYN_PATH_SURFACES 256u   // there are triangles
+#define TYN_PATH_EMITTERS 512u   // ... and a table by which emissive ones are drawn
+#define TYN_PATH_TEXTURES 4096u  // some materials have textures
+#define TYN_PATH_KEEP_FEW 16384u // few triangles are kept in registers
+#define TYN_PATH_QUEUE 8192u     // images: threads take pieces of work one after another
+#define TYN_PATH_THIN 2048u      // first flights are stretched: args.stretch
+#define TYN_PATH_GLOW 32768u     // some medium emits by a grid
+#define TYN_PATH_ALBEDO 65536u   // some medium has an albedo by a grid
+#define TYN_PATH_TABLED 131072u  // some phase functions are tables
+#define TYN_PATH_ENDED 262144u   // images: paths end in a field that is given
+#define TYN_PATH_FIELD 524288u   // images: a field says where light comes from; else a light does
+#define TYN_PATH_SHORT_LOOPS 2097152u // tyn_capacity.short_loops
+#define TYN_PATH_ONE_PHASE 1048576u   // the phase functions of all channels are equal
 // Balance: the first flights of light are followed from suns and lamps.
 #define TYN_PATH_FROM_LIGHTS 1024u
 

@@ -18,7 +18,7 @@ layout(constant_id = 4) const uint ENVIRONMENT = 2u;
 layout(constant_id = 5) const uint FLAGS = 0u;
 layout(constant_id = 6) const uint FEW = 0u;
 #define SURFACE_FEW FEW
-#define SURFACE_KEPT ((FLAGS & TYN_PATH_SOFTWARE) != 0u)
+#define SURFACE_KEPT ((FLAGS & TYN_PATH_KEEP_FEW) != 0u)
 
 layout(set = 0, binding = 0) uniform sampler3D atlas;
 TYN_UNIFORM(1, medium, medium_block medium_in);

@@ -24,9 +24,10 @@ typedef struct tyn_path_params {
     uint32_t tabled;    // some phase function is a table
     uint32_t repeat;    // some axis is periodic
     uint32_t triangles;
-    uint32_t textures; // of their materials
-    uint32_t software; // the device is a processor
-    uint32_t emitters; // some of them emit and are in the table
+    uint32_t textures;    // of their materials
+    uint32_t keep_few;    // the device is a processor
+    uint32_t short_loops; // tyn_capacity
+    uint32_t emitters;    // some of them emit and are in the table
     uint32_t emissive;
     uint32_t glow, albedo; // by grids of colours, of some medium
     uint32_t num_lights;
@@ -130,7 +131,8 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
         (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
-        (p->textures ? TYN_PATH_TEXTURES : 0) | (p->software ? TYN_PATH_SOFTWARE : 0) |
+        (p->textures ? TYN_PATH_TEXTURES : 0) | (p->keep_few ? TYN_PATH_KEEP_FEW : 0) |
+        (p->short_loops ? TYN_PATH_SHORT_LOOPS : 0) |
         (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0) | (p->glow ? TYN_PATH_GLOW : 0) |
         (p->albedo ? TYN_PATH_ALBEDO : 0) | (p->ended ? TYN_PATH_ENDED : 0) |
         (p->field ? TYN_PATH_FIELD : 0) | (p->one_phase ? TYN_PATH_ONE_PHASE : 0);

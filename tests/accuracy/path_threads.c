@@ -94,7 +94,8 @@ static void as_a_card(void **state)
     tyn_balance balances[2];
     tyn_probe_result probes[2][2];
     for (int i = 0; i < 2; i++) {
-        t->dev->capacity = i ? (tyn_capacity){.threads = 262144} : own;
+        t->dev->capacity =
+            i ? (tyn_capacity){.short_loops = own.short_loops, .threads = 262144} : own;
         take(t, &scene, &view, TYN_OUTPUT_BALANCE, &balances[i], sizeof balances[i]);
         view.num_samples = 1000 * SAMPLES;
         take(t, &scene, &view, TYN_OUTPUT_PROBE, probes[i], sizeof probes[i]);

@@ -166,7 +166,7 @@ static void same_picture_on_a_card(void **state)
 {
     gpu_test *t = *state;
     const tyn_capacity own = t->dev->capacity;
-    t->dev->capacity = (tyn_capacity){.threads = 4096};
+    t->dev->capacity = (tyn_capacity){.short_loops = own.short_loops, .threads = 4096};
     same_picture(state);
     t->dev->capacity = own;
 }

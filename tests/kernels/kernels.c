@@ -298,7 +298,7 @@ static void constants_of_card(const tyn_kernel *k, const uint32_t *from, uint32_
 {
     memcpy(spec, from, k->num_spec * sizeof *spec);
     if (strncmp(k->name, "path_", 5) == 0 && k->num_spec == TYN_PATH_NUM_SPEC) {
-        spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_SOFTWARE;
+        spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_KEEP_FEW | TYN_PATH_SHORT_LOOPS);
     }
     const uint32_t rays = RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_PIXELS;
     if (strncmp(k->name, "raymarch_", 9) == 0 && spec[RAYMARCH_SPEC_FEATURES] & rays) {

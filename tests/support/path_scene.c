@@ -225,6 +225,7 @@ static void render_some(gpu_test *t, path_scene *s)
     refs[PATH_PORT_MEAN_MULTIPLE] = history(t, "mean_multiple", layers ? w : 1, layers ? h : 1);
     refs[PATH_PORT_MEAN_TRANSMITTANCE] =
         history(t, "mean_transmittance", layers ? w : 1, layers ? h : 1);
+    s->params.short_loops = t->dev->capacity.short_loops;
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "radiance", refs[PATH_PORT_RADIANCE], true);
     tyn_graph_output(t->graph, "error", refs[PATH_PORT_ERROR], true);

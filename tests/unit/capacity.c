@@ -19,6 +19,7 @@ typedef struct card {
     VkPhysicalDeviceShaderCoreBuiltinsPropertiesARM arm;
     uint32_t subgroup;
     bool fails;
+    VkDriverId id;
 } card;
 static card driver; // functions of Vulkan get handles only
 
@@ -51,6 +52,9 @@ static void tell(VkPhysicalDevice device, VkPhysicalDeviceProperties2 *all)
     for (VkBaseOutStructure *s = all->pNext; s; s = s->pNext) {
         VkBaseOutStructure *const next = s->pNext;
         switch ((int)s->sType) {
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES:
+            ((VkPhysicalDeviceDriverProperties *)s)->driverID = driver.id;
+            break;
         case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES:
             ((VkPhysicalDeviceSubgroupProperties *)s)->subgroupSize = driver.subgroup;
             break;
@@ -149,6 +153,10 @@ static void by_the_driver(void **state)
     }
     const tyn_capacity processor = capacity_of((card){.type = VK_PHYSICAL_DEVICE_TYPE_CPU});
     assert_true(processor.software);
+    assert_false(processor.short_loops); // another one than lavapipe
+    const tyn_capacity lavapipe =
+        capacity_of((card){.type = VK_PHYSICAL_DEVICE_TYPE_CPU, .id = VK_DRIVER_ID_MESA_LLVMPIPE});
+    assert_true(lavapipe.software && lavapipe.short_loops);
 }
 
 // ---- sizes ------------------------------------------------------------------------------------

@@ -118,6 +118,7 @@ TYN_API const char *tyn_device_driver(const tyn_device *dev);
 typedef struct tyn_capacity {
     bool software;      // a processor
     bool little_shared; // a workgroup has less than 32 KiB of shared memory; Vulkan promises 16
+    bool short_loops;   // the loops of a thread end after 65535 turns in all: lavapipe
     uint32_t threads;   // that a card holds at once, a power of two; 0 of a processor
 } tyn_capacity;
 

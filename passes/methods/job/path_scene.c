@@ -167,7 +167,8 @@ void tyn_path_scene(const tyn_job *job, tyn_path_params *p)
     p->repeat = tyn_is_periodic(frame);
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
-    p->software = job->capacity.software;
+    p->keep_few = job->capacity.software;
+    p->short_loops = job->capacity.short_loops;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
     p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;
