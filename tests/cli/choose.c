@@ -405,6 +405,8 @@ static void pop_where_it_breaks(void **state)
     fronts kept = f;
     size_t wrong = 0;
     assert_int_equal(fronts_open(&a, NULL, &f), EXIT_DONE);
+    assert_true(f.device.paces.solve_ms > 0 && f.device.paces.pixel_ns > 0 &&
+                f.device.paces.sample_ns > 0);
     for (size_t i = 0; i < ARRAY_SIZE(boxes); i++) {
         const regime r = regime_of_box(i);
         const double measured = boxes[i].measured;
