@@ -33,8 +33,9 @@ const int SPARSE_SINGLE = 3;         // light that has scattered once, where a l
 // It is interpolated where the picture is smooth, whether it is smooth itself or not.
 #define SPARSE_HAS_SINGLE raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)
 
-// The image is no larger than the picture, at whose size other images may have reached what the device can hold: two texels of nodes
-// beside each other, below them the third ones of two rows in one, and the fourth ones, if there are any.
+// The image is at most two texels wider and higher than the picture, at whose size other images may have reached what the
+// device can hold: two texels of nodes beside each other, below them the third ones of two rows in one, and the fourth ones, if
+// there are any.
 ivec2 sparse_texel(ivec2 node, int k)
 {
     ivec2 nodes = (imageSize(radiance_image) + 1) / 2;

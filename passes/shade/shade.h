@@ -30,8 +30,9 @@ typedef struct tyn_shade_params {
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
     uint32_t samples;  // of the G-buffer, along each side of a pixel
-    uint32_t parted;   // as tyn_raymarch_params.parted, of pixels and of those that are listed; else SHADE_SLICED
-    uint32_t sky_fan;  // directions of an ordinate
+    uint32_t
+        parted; // as tyn_raymarch_params.parted, of pixels and of those that are listed; else SHADE_SLICED
+    uint32_t sky_fan; // directions of an ordinate
     uint32_t sky_cells
         [3]; // that have columns along ordinates (tyn_lattice_dims); 0: nothing dims their light
     uint32_t
@@ -70,7 +71,7 @@ typedef struct tyn_shade_params {
     X(SHADE, PART_ROWS, part_rows, SCRATCH, IMAGE_2D, \
         "summed along rows, then all smooth light", .format = VK_FORMAT_R32G32B32A32_UINT), \
     X(SHADE, EDGE_COUNT, edge_count, SCRATCH, BUFFER, "struct gbuffer_edge_count"), \
-    X(SHADE, EDGES, edges, SCRATCH, BUFFER, "uint[]: pixels that show several pieces of surface"), \
+    X(SHADE, EDGES, edges, SCRATCH, BUFFER, "uint[]: pixels whose samples see several triangles"), \
     X(SHADE, ALONE_COUNT, alone_count, SCRATCH, BUFFER, "shade_alone.glsl: struct gbuffer_edge_count"), \
     X(SHADE, ALONE, alone, SCRATCH, BUFFER, "pixels with pieces that have smooth light of their own")
 // clang-format on

@@ -1,7 +1,7 @@
 // piece_light.glsl -- radiance of the surfaces in a pixel, and how far away they are, in a texel: of two groups of its samples.
 //
 // Of one group: its packed colour, and the distance. Of two, two words each: 20 bits of the distance, and 12 bits a channel with a
-// common exponent of eight. They are right within 2^-13 then.
+// common exponent of eight. Distances are right within 2^-13 then, colours within 2^-12 of the largest channel.
 #ifndef TYN_PIECE_LIGHT_GLSL
 #define TYN_PIECE_LIGHT_GLSL
 #include "shaders/colour/packed_colour.glsl"
@@ -27,7 +27,7 @@ uvec2 piece_light_half(const piece_light p)
 {
     uvec3 bits = floatBitsToUint(p.radiance) & 0x7fffffffu;
     uint exponent = max(max(bits.r, max(bits.g, bits.b)) >> 23, 20u);
-    float scale = uintBitsToFloat((265u - exponent) << 23); // 2^12 times this is above the largest one
+    float scale = uintBitsToFloat((265u - exponent) << 23); // the largest one times this is below 2^12
     uvec3 c = uvec3(max(min(vec3(4095.0), p.radiance * scale + 0.5), vec3(0.0)));
     return uvec2((floatBitsToUint(p.distance) + 0x400u) >> 11 | c.r << 20, c.g | c.b << 12 | exponent << 24);
 }
