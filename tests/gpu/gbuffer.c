@@ -239,7 +239,7 @@ static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image
                         const expected *samples, uint32_t count, uint32_t counts[3],
                         uint32_t *num_mixed)
 {
-    bool doubtful = false, textured = false, mixed = false, several = false;
+    bool doubtful = false, textured = false, mixed = false, several = false, turned = false;
     uint32_t shown = 0;
     float albedo[3] = {0}, normal[3] = {0};
     double nearest = 1e30, farthest = 0;
@@ -256,6 +256,7 @@ static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image
         }
         nearest = samples[k].distance > 0 ? fmin(nearest, samples[k].distance) : nearest;
         farthest = fmax(farthest, samples[k].distance);
+        turned |= cosine < 0.85f;
         // Its facet is turned, or off the first one's plane.
         several |= cosine < 0.9f ||
                    fabs(samples[k].distance - samples[0].distance) > 1e-3 * samples[0].distance;
@@ -270,6 +271,7 @@ static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image
     assert_true(((first & mixed_bit) != 0) == mixed);
     assert_true(what != WHOLE || shown == count);
     assert_true(what != SEVERAL || shown < count || several);
+    assert_true(what == SEVERAL || shown < count || !turned);
     double range[2][2] = {{1e30, 0}, {1e30, 0}}; // of distances in the groups
     for (uint32_t k = 0; k < count; k++) {
         const uint32_t seen = got->seen[image[k]];
