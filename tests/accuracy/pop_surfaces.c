@@ -216,7 +216,7 @@ static void corners(void **state)
         print_message("%s of a room under an emitter: %.2f %% off at most, mean %+.2f %%\n",
                       wall ? "wall" : "floor", 100 * worst, 100 * (sum / all - 1));
         assert_within(worst, 0.005, NULL);
-        assert_within(fabs(sum / all - 1), 0.003, NULL);
+        assert_within(fabs(sum / all - 1), 0.0025, NULL);
         picture_free(&p);
         tyn_scene_finish(&scene);
     }
