@@ -4,6 +4,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -167,12 +168,35 @@ static void numbers(void **state)
     assert_false(reference_read_floats(78, read, 4));
 }
 
+static void note(const char *kernels)
+{
+    FILE *f = fopen(TYN_REFERENCES_DIR "/kernels", "w");
+    assert_non_null(f);
+    fputs(kernels, f);
+    fclose(f);
+}
+
+// Of other kernels they are not read; noted as the present ones' they are.
+static void other_kernels(void **state)
+{
+    (void)state;
+    float read[4];
+    note("0000000000000001\n");
+    assert_false(reference_read_floats(77, read, 4));
+    setenv("TYN_REFERENCES", "note", 1);
+    assert_true(reference_read_floats(77, read, 4));
+    unsetenv("TYN_REFERENCES");
+    assert_true(reference_read_floats(77, read, 4));
+}
+
 int main(void)
 {
+    remove(TYN_REFERENCES_DIR "/kernels"); // of an earlier build
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys),
         cmocka_unit_test(pictures),
         cmocka_unit_test(numbers),
+        cmocka_unit_test(other_kernels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
