@@ -130,17 +130,23 @@ static void refuses_what_exceeds_limits(void **state)
 static const char fewer_cells[] = "the solve of the lattice is ended before it has converged, and "
                                   "this device's coarse levels are fewer";
 
+static const char other_order[] =
+    "where threads share a place's virtual lights, as on cards, these "
+    "are added in another order: half an epsilon is 6e-8";
+
 static const struct {
     const char *scene, *method, *settings;
     uint32_t samples;
+    double bound;
     const char *why; // pictures are not the same bits
 } cases[] = {
-    {"cloud", "pop", NULL, 0, fewer_cells},
-    {"room", "pop", NULL, 0, fewer_cells},
-    {"cornell-smoke", "path", NULL, 4, NULL},
-    {"smoke-sky", "refined", NULL, 2, NULL},
-    {"smoke-sky", "lpv", NULL, 0, NULL},
-    {"cornell-smoke", "photon", "photon_trace.generations=4 photon_trace.cells=8", 0, NULL},
+    {"cloud", "pop", NULL, 0, 1e-3, fewer_cells},
+    {"room", "pop", NULL, 0, 1e-3, fewer_cells},
+    {"cornell-smoke", "path", NULL, 4, 0, NULL},
+    {"smoke-sky", "refined", NULL, 2, 0, NULL},
+    {"smoke-sky", "lpv", NULL, 0, 0, NULL},
+    {"cornell-smoke", "photon", "photon_trace.generations=4 photon_trace.cells=8", 0, 1e-7,
+     other_order},
 };
 
 static void render(picture *p, devices *d, tyn_device *dev, size_t i)
@@ -162,8 +168,8 @@ static void pictures(void **state)
         render(&strict, d, d->t.dev, i);
         render(&software, d, d->software, i);
         const picture_error e = picture_compare(&strict, &software, 1);
-        const bool same = within(e.rel_l1, cases[i].why ? 1e-3 : 0, cases[i].why, "%s by %s",
-                                 cases[i].scene, cases[i].method);
+        const bool same = within(e.rel_l1, cases[i].bound, cases[i].why, "%s by %s", cases[i].scene,
+                                 cases[i].method);
         picture_free(&strict);
         picture_free(&software);
         assert_true(same);
