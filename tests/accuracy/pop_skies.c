@@ -324,7 +324,7 @@ static void against_path(void **state)
         {"yard, even", YARD, EVEN, 0.6f, 0.0055, 0.0017, darker},
         {"ground of 40 m, even", GROUND, EVEN, 20, 0.016, 0.006, NULL},
         {"ground of 40 m, blue", GROUND, BLUE, 20, 0.014, 0.003, darker},
-        {"ground of 200 m, even", GROUND, EVEN, 100, 0.05, 0.05, NULL},
+        {"ground of 200 m, even", GROUND, EVEN, 100, 0.045, 0.045, NULL},
         {"fog on 80 m, even", GROUND_IN_FOG, EVEN, 40, 0.028, 0.016, NULL},
     };
     path_run runs;
