@@ -73,7 +73,8 @@ static uint64_t next_key(path_run *r, const tyn_scene *scene, tyn_view *v, uint3
 static void run(path_run *r, const tyn_scene *scene, const tyn_view *view, uint64_t key)
 {
     if (key) {
-        printf("reference: %016llx, not in tests/references, or of other kernels\n", (unsigned long long)key);
+        printf("reference: %016llx, not in tests/references, or of other kernels\n",
+               (unsigned long long)key);
     }
     offline_frame(r->off, scene, view);
     assert_int_equal(tyn_device_validation_messages(r->dev), 0);
