@@ -9,6 +9,7 @@
 #include "todo.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { SIZE = 100 };
 
