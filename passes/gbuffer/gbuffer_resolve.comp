@@ -28,15 +28,7 @@ void main()
         same = same && imageLoad(seen, corner + ivec2(k % samples, k / samples)).r == index;
     }
     if (!same) {
-        uint n = atomicAdd(mixed_count.count, 1u);
+        GBUFFER_ADD(n, mixed_count, 1u, 1u, row)
         mixed[n] = uint(pixel.y) << 16 | uint(pixel.x);
-        if (n % GBUFFER_EDGES == 0u) {
-            uvec2 groups = gbuffer_edge_groups(n, row);
-            atomicMax(mixed_count.groups.x, groups.x);
-            atomicMax(mixed_count.groups.y, groups.y);
-        }
-    }
-    if (pixel == ivec2(0)) {
-        mixed_count.groups.z = 1u;
     }
 }

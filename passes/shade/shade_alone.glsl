@@ -24,11 +24,7 @@ layout(binding = SHADE_ALONE, scalar) SHADE_ALONE_LISTED buffer alone_buffer
 // `threads` that take `many` elements of the list.
 void shade_list_alone(ivec2 pixel, uint samples, uint threads, uint many)
 {
-    uint n = atomicAdd(alone_count.count, 1u);
+    GBUFFER_ADD(n, alone_count, threads, many, GBUFFER_ROW)
     alone_pixels[n] = uvec2(uint(pixel.y) << 16 | uint(pixel.x), samples);
-    uvec2 groups = gbuffer_edge_groups(n * threads / many, GBUFFER_ROW);
-    atomicMax(alone_count.groups.x, groups.x);
-    atomicMax(alone_count.groups.y, groups.y);
-    atomicMax(alone_count.groups.z, 1u);
 }
 #endif

@@ -62,12 +62,8 @@ void main()
     }
     gbuffer_pixel seen = shade_pixel(pixel);
     if (!listed && gbuffer_is_mixed(seen)) {
-        uint n = atomicAdd(edge_count.count, 1u);
+        GBUFFER_ADD(n, edge_count, 1u, 1u, GBUFFER_ROW)
         edges[n] = uint(pixel.y) << 16 | uint(pixel.x);
-        uvec2 groups = gbuffer_edge_groups(n, GBUFFER_ROW);
-        atomicMax(edge_count.groups.x, groups.x);
-        atomicMax(edge_count.groups.y, groups.y);
-        atomicMax(edge_count.groups.z, 1u);
         return;
     }
     uint alone = 0u; // samples of pieces that no place tells of: bits
