@@ -123,6 +123,25 @@ static bool has_colors(const tyn_medium *m)
     return m->emission_grid || m->radiance_grid || m->albedo_grid;
 }
 
+// Do all media that scatter light of a channel share one phase function, as `out` then tells?
+static bool have_one_phase(const tyn_scene *scene, tyn_phase out[3])
+{
+    bool one = true;
+    for (int c = 0; c < 3; c++) {
+        out[c] = scene->media[scene->shapes[0].medium].phase[c];
+        bool found = false;
+        for (uint32_t i = 0; i < scene->num_shapes; i++) {
+            const tyn_medium *m = &scene->media[scene->shapes[i].medium];
+            if (m->sigma_s[c] > 0 || m->albedo_grid) {
+                one = one && (!found || tyn_phase_equal(out[c], m->phase[c]));
+                out[c] = m->phase[c];
+                found = true;
+            }
+        }
+    }
+    return one;
+}
+
 // Texels of a resampled medium: as fine as its finest grid, within bounds.
 static void choose_size(const tyn_scene *scene, const double extent[3], uint32_t size[3])
 {
@@ -159,14 +178,20 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
         equal &= equal_coefficients(first, m) && !has_colors(m);
         max_sum += m->volume < 0 ? 1.0f : scene->volumes[m->volume].max_density;
     }
-    b->mode = equal ? TYN_MEDIUM_DENSITY : TYN_MEDIUM_COEFFICIENTS;
+    tyn_phase phase[3];
+    const bool one_phase = have_one_phase(scene, phase);
+    b->mode = equal       ? TYN_MEDIUM_DENSITY
+              : one_phase ? TYN_MEDIUM_ONE_PHASE
+                          : TYN_MEDIUM_COEFFICIENTS;
+    if (one_phase) {
+        memcpy(b->phase, phase, sizeof phase);
+    }
     b->num_shapes = scene->num_shapes;
     b->max_density = equal ? max_sum : 1.0f;
     b->sigma_t_max = equal ? 0.0f : 1.0f;
     for (int c = 0; equal && c < 3; c++) {
         b->sigma_s[c] = first->sigma_s[c] * tyn_medium_scale(first);
         b->sigma_a[c] = first->sigma_a[c] * tyn_medium_scale(first);
-        b->phase[c] = first->phase[c];
         b->emission[c] = first->emission[c] * tyn_medium_scale(first);
         b->sigma_t_max = fmaxf(b->sigma_t_max, b->sigma_s[c] + b->sigma_a[c]);
     }

@@ -38,9 +38,9 @@ static void warn(tyn_context *ctx, bool knows)
     tyn_context_warn(
         ctx,
         knows
-            ? "phase functions of several media, or beside grids of colours: each counts as the "
-              "Henyey-Greenstein lobe "
-              "of its mean cosine; 'path' knows them"
+            ? "media of different phase functions: each counts as the Henyey-Greenstein lobe of "
+              "its "
+              "mean cosine; 'path' knows them"
             : "phase functions that are not one Henyey-Greenstein lobe count as that of their mean "
               "cosine; 'path', 'pop' and 'single' know them");
 }
@@ -71,8 +71,8 @@ tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene)
         return TYN_OK;
     }
     const tyn_known_phases known = ctx->method->info.phases;
-    const bool one = frame->medium.mode == TYN_MEDIUM_DENSITY;
-    if (known == TYN_PHASES_LOBES || (known == TYN_PHASES_OF_ONE_MEDIUM && !one)) {
+    const bool one = frame->medium.mode != TYN_MEDIUM_COEFFICIENTS;
+    if (known == TYN_PHASES_LOBES || (known == TYN_PHASES_ONE && !one)) {
         warn(ctx, known != TYN_PHASES_LOBES);
         take_one_lobe(frame->medium.phase);
         for (uint32_t i = 0; i < frame->medium.num_shapes; i++) {
@@ -80,7 +80,7 @@ tyn_result tyn_frame_phases(tyn_context *ctx, const tyn_scene *scene)
         }
         return TYN_OK;
     }
-    if (known == TYN_PHASES_OF_ONE_MEDIUM) {
+    if (known == TYN_PHASES_ONE) {
         warn_of_narrow_lobes(ctx);
     }
     frame->phase_tables = scene->phase_tables;

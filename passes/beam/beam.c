@@ -141,7 +141,7 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
 void tyn_beam_plan(tyn_beam_params *params, const struct medium_block *medium,
                    const struct light_block *lights, uint32_t num_suns)
 {
-    int32_t most = medium->mode == TYN_MEDIUM_COEFFICIENTS ? MAX_COEFFICIENT_CELLS : MAX_CELLS;
+    int32_t most = medium->mode != TYN_MEDIUM_DENSITY ? MAX_COEFFICIENT_CELLS : MAX_CELLS;
     int32_t cells = params->cells < 1 ? 1 : params->cells > most ? most : params->cells;
     double maps[TYN_BEAM_MAX_SUNS][3][4];
     params->mode = medium->mode;

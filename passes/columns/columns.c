@@ -9,7 +9,7 @@ static const uint64_t max_bytes = 128u << 20, batch_bytes = 64u << 20;
 
 static uint32_t components(const tyn_columns_params *p)
 {
-    return p->mode == TYN_MEDIUM_COEFFICIENTS ? COLUMNS_COMPONENTS : 1;
+    return p->mode != TYN_MEDIUM_DENSITY ? COLUMNS_COMPONENTS : 1;
 }
 
 // The most that an ordinate may need, whatever its direction: columns, and nodes of one component.

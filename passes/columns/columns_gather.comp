@@ -31,7 +31,7 @@ float component_at(uint component, vec3 uvw)
         return sigma_s.r;
     }
     vec3 sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
-    phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+    phase p[3] = medium_phase(uvw);
     similarity_clamp(sigma_s, p);
     vec3 value = component < 3u ? sigma_s
                                 : component < 6u ? sigma_a : sigma_s * (1.0 - delta_fraction(p));

@@ -22,7 +22,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_columns_average_params *p = params;
     tyn_extent size = {p->size[0], p->size[1], p->size[2]};
-    if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+    if (p->mode != TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, size, 1);
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, size, 1);
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_G, size, 1);
@@ -37,7 +37,8 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_columns_average_params *p = params;
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_AVERAGE_PORT_DENSITY);
     const uint32_t fine[3] = {texels.x, texels.y, texels.z};
-    struct columns_average_args args = {.size = {p->size[0], p->size[1], p->size[2]}};
+    struct columns_average_args args = {.size = {p->size[0], p->size[1], p->size[2]},
+                                        .one_phase = p->mode == TYN_MEDIUM_ONE_PHASE};
     double fetches = 1;
     for (int a = 0; a < 3; a++) {
         // One trilinear sample for two voxels along an axis.
@@ -45,7 +46,7 @@ static void record(tyn_recorder *r, const void *params)
         args.samples[a] = (uint32_t)fmin(fmax(pairs, 1), 16);
         fetches *= (double)args.samples[a] * p->size[a];
     }
-    bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
+    bool coefficients = p->mode != TYN_MEDIUM_DENSITY;
     TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
                  .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
     tyn_rec_work(r, "fetches", fetches * (coefficients ? 3 : 1));

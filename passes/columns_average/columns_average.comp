@@ -2,7 +2,7 @@
 // TYN_DENSITY is defined for mode DENSITY.
 //
 // The means of sigma_s, sigma_a and (1 - f) sigma_s are those of the medium; g is what makes the last of
-// the first.
+// the first. In mode ONE_PHASE whoever reads the means takes f from the medium's phase function.
 #include "shaders/beams/columns_args.h"
 #include "shaders/phase/phase.glsl"
 
@@ -51,7 +51,9 @@ void main()
         vec3 uvw = columns_average_uvw(texel, i);
         vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
         phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
-        similarity_clamp(sigma_s, p);
+        if (args.one_phase == 0u) {
+            similarity_clamp(sigma_s, p);
+        }
         sum_s += sigma_s;
         sum_p += sigma_s * (1.0 - delta_fraction(p));
         sum_a += textureLod(sigma_a_tex, uvw, 0.0).rgb;

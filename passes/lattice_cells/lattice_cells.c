@@ -36,7 +36,7 @@ static void record(tyn_recorder *r, const void *params)
     }
     TYN_DISPATCH(r, .cells = dims, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
-    tyn_rec_work(r, "fetches", fetches * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1));
+    tyn_rec_work(r, "fetches", fetches * (p->mode != TYN_MEDIUM_DENSITY ? 4 : 1));
 }
 
 const tyn_pass_desc tyn_pass_lattice_cells = {

@@ -65,7 +65,7 @@ static void record(tyn_recorder *r, const void *params)
     double cells = (double)dims.x * dims.y * dims.z * p->count;
     tyn_rec_work(r, "cells", cells);
     tyn_rec_work(r, "flops", cells * (spec[1] * 30 + 30));
-    tyn_rec_work(r, "bytes", cells * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 18 : 2));
+    tyn_rec_work(r, "bytes", cells * (p->mode != TYN_MEDIUM_DENSITY ? 18 : 2));
 }
 
 const tyn_pass_desc tyn_pass_lattice_ordinates = {

@@ -189,7 +189,7 @@ const tyn_method tyn_method_lpv = {
              .summary = "light propagation volumes: scattered light moves on from cell to cell",
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
-             .phases = TYN_PHASES_OF_ONE_MEDIUM,
+             .phases = TYN_PHASES_ONE,
              .limits = limits,
              .promise = &promise},
     .passes = passes,

@@ -24,7 +24,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
                              TYN_BRICK, p->size[i], i);
         }
     }
-    if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+    if (p->mode != TYN_MEDIUM_DENSITY) {
         tyn_build_format(b, MEDIUM_PORT_DENSITY, VK_FORMAT_R32G32B32A32_SFLOAT);
         tyn_build_image(b, MEDIUM_PORT_DENSITY, size, 1);
         tyn_build_image(b, MEDIUM_PORT_SIGMA_A, size, 1);
@@ -44,7 +44,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_medium_params *p = params;
-    bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
+    bool coefficients = p->mode != TYN_MEDIUM_DENSITY;
     bool colors = coefficients && p->colors;
     tyn_extent size = {p->size[0], p->size[1], p->size[2]};
     tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};

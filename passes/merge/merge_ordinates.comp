@@ -40,6 +40,17 @@ vec3 coloured_share(uint n, uvec3 cell, const beam_tau unit, tms_row row[3], flo
     return k;
 }
 
+// Of unequal media with one phase function.
+vec3 unequal_share(uint n, uvec3 cell, tms_row row[3], float mu, float level)
+{
+    beam_tau tau = columns_tau(n, cell, args.dims);
+    vec3 k = exp(-(tau.a + tau.p));
+    for (int ch = 0; ch < 3; ch++) {
+        k[ch] *= tms_kernel(row[ch], mu, tau.s[ch], level);
+    }
+    return k;
+}
+
 vec3 mixed_share(uint n, uvec3 cell, tms_last last[3], float mu, float level,
                  float mean_cosine)
 {
@@ -79,6 +90,8 @@ void main()
         vec3 share;
         if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
             share = mixed_share(n, uvec3(c), last, mu, level, o.mean_cosine);
+        } else if (medium_mode == TYN_MEDIUM_ONE_PHASE) {
+            share = unequal_share(n, uvec3(c), row, mu, level);
         } else if (grey) {
             share = grey_share(n, uvec3(c), unit, row[0], mu, level);
         } else {

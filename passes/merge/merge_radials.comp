@@ -70,7 +70,7 @@ vec3 forward_part(const lattice_box box, ivec3 c, vec3 v)
 // (K_tms + K_lobe `forward`) / (1 - f) of a channel.
 float kernel(uint ch, const phase last, float one_minus_mu, float tau_s, float tau_p, float forward)
 {
-    if (medium_mode == TYN_MEDIUM_DENSITY) {
+    if (medium_mode != TYN_MEDIUM_COEFFICIENTS) {
         scatter_angle angle = scatter_angle_of_point(ch, one_minus_mu);
         vec2 k = scatter_kernels(angle, tau_s);
         return (k.x + forward * k.y) / angle.loss;

@@ -201,7 +201,7 @@ const tyn_method tyn_method_pop = {
              .outputs =
                  TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .traces_rays = true, // virtual lights see what stands around them
-             .phases = TYN_PHASES_OF_ONE_MEDIUM,
+             .phases = TYN_PHASES_ONE,
              .limits = tyn_limits_pop,
              .promise = &promise},
     .passes = passes,

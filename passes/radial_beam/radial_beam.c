@@ -64,7 +64,7 @@ static struct radial_beam_args layout(const tyn_radial_beam_params *p)
                                             (uint32_t)p->vpl_cells};
     const uint32_t counts[RADIAL_CLASSES] = {p->num_fine, p->num_lamps - p->num_fine, p->max_vpls};
     uint32_t most =
-        smaller(p->mode == TYN_MEDIUM_COEFFICIENTS ? MAX_COEFFICIENT_CELLS : MAX_CELLS, p->finest);
+        smaller(p->mode != TYN_MEDIUM_DENSITY ? MAX_COEFFICIENT_CELLS : MAX_CELLS, p->finest);
     struct radial_beam_args args = {.num_lamps = p->num_lamps, .max_vpls = p->max_vpls};
     uint32_t width = 1, first = 0;
     for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {

@@ -141,7 +141,7 @@ vec3 march_lamplight_seen(const march_lamp lamp, const march_lamps ray, const ma
         k_once[c] = phase_near(m.phase[c], 1.0, one_minus_mu);
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec2 k;
-            if (medium_mode == TYN_MEDIUM_DENSITY) {
+            if (medium_mode != TYN_MEDIUM_COEFFICIENTS) {
                 if (c == 0u || lut.channel_row[c] != lut.channel_row[0]) {
                     angle = scatter_angle_of_point(c, one_minus_mu);
                 }

@@ -146,14 +146,14 @@ march_medium march_medium_at(const march_medium unit, vec3 uvw)
         uvw -= vec3(medium.repeat) * floor(uvw);
     }
 #ifndef RAYMARCH_GREY
-    if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
+    if (medium_mode != TYN_MEDIUM_DENSITY) {
         vec3 emission = vec3(0.0);
         if (raymarch_has(RAYMARCH_EMISSION)) {
             emission = textureLod(emission_tex, uvw, 0.0).rgb;
         }
         return march_medium_of(medium_point(textureLod(density_tex, uvw, 0.0).rgb,
                                             textureLod(sigma_a_tex, uvw, 0.0).rgb,
-                                            phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb), emission));
+                                            medium_phase(uvw), emission));
     }
 #endif
     return march_scale(unit, max(textureLod(density_tex, uvw, 0.0).r, 0.0));

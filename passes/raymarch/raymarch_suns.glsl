@@ -63,7 +63,7 @@ march_sun march_sun_of(uint n, const march_medium unit, vec3 origin, vec3 direct
 #else
     sun.light = beams[n].light;
     sun.one_minus_mu = one_minus_mu;
-    for (uint c = 0u; c < 3u && medium_mode == TYN_MEDIUM_DENSITY; c++) {
+    for (uint c = 0u; c < 3u && medium_mode != TYN_MEDIUM_COEFFICIENTS; c++) {
         sun.once[c] = phase_near(unit.phase[c], light.mean_cosine, one_minus_mu);
         if (raymarch_has(RAYMARCH_KERNELS)) {
             sun.angle[c] = scatter_angle_of(beams[n].light, c, one_minus_mu);
@@ -102,6 +102,11 @@ vec3 march_sunlight(const march_sun sun, const march_medium unit, const march_me
         float column = beam_fetch(column_tex, place).r;
         tau_s = unit.scattering * column;
         tau_a = unit.absorption * column;
+    } else {
+        tau_s = beam_fetch(column_tex, place);
+        tau_a = beam_fetch(tau_a_tex, place);
+    }
+    if (medium_mode != TYN_MEDIUM_COEFFICIENTS) {
         if (raymarch_has(RAYMARCH_KERNELS)) {
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels(sun.angle[c], tau_s[c]);
@@ -110,8 +115,6 @@ vec3 march_sunlight(const march_sun sun, const march_medium unit, const march_me
             }
         }
     } else {
-        tau_s = beam_fetch(column_tex, place);
-        tau_a = beam_fetch(tau_a_tex, place);
         for (int c = 0; c < 3; c++) {
             k_once[c] = phase_near(m.phase[c], sun.mean_cosine, sun.one_minus_mu);
         }

@@ -289,7 +289,7 @@ const tyn_method tyn_method_refined = {
                         TYN_OUTPUT_COMPOSITE,
              .progressive = true,
              .traces_rays = true,
-             .phases = TYN_PHASES_OF_ONE_MEDIUM,
+             .phases = TYN_PHASES_ONE,
              .limits = limits,
              .promise = &promise},
     .reads_env_cdf = true,

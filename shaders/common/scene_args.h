@@ -13,6 +13,7 @@
 #define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
 // Textures sigma_s, sigma_a, g, emission (media of unequal coefficients).
 #define TYN_MEDIUM_COEFFICIENTS 1
+#define TYN_MEDIUM_ONE_PHASE 2 // the same textures, but the phase function is everywhere the block's
 
 #define TYN_SHAPE_KIND_BOX 0
 #define TYN_SHAPE_KIND_SPHERE 1
@@ -33,7 +34,7 @@ struct medium_block { // uniform buffer "medium"
     float max_density; // largest texture value (DENSITY), else 1
     tyn_vec3 sigma_s;  // 1/m at texture value 1 (DENSITY), else 0
     tyn_vec3 sigma_a;
-    tyn_phase phase[3];  // of each channel
+    tyn_phase phase[3];  // of each channel (DENSITY and ONE_PHASE)
     tyn_vec3 emission;   // W/(m^3 sr) at texture value 1
     tyn_uvec3 bricks;    // brick counts, ceil(size / TYN_BRICK)
     tyn_vec3 brick_size; // voxel * TYN_BRICK, m (the last brick may reach beyond the box)

@@ -19,8 +19,8 @@
 layout(constant_id = MEDIUM_SPEC) const uint medium_mode = TYN_MEDIUM_DENSITY;
 #ifdef MEDIUM_AT
 #define MEDIUM_BLOCK MEDIUM_AT
-layout(set = 0, binding = MEDIUM_AT + 1) uniform sampler3D density_tex; // or sigma_s in mode COEFFICIENTS
-layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D sigma_a_tex; // this and the next: only there
+layout(set = 0, binding = MEDIUM_AT + 1) uniform sampler3D density_tex; // of the other modes: sigma_s
+layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D sigma_a_tex; // this and the next are there in these alone
 layout(set = 0, binding = MEDIUM_AT + 3) uniform sampler3D g_tex;
 layout(set = 0, binding = MEDIUM_AT + 4) uniform sampler3D emission_tex;
 #endif
@@ -66,7 +66,17 @@ float medium_density(vec3 p)
     return medium_inside(uvw) ? textureLod(density_tex, uvw, 0.0).r : 0.0;
 }
 
-// Coefficients of either mode; 0 outside. One fetch (DENSITY) or one per coefficient that is used.
+// Phase functions at a texture coordinate.
+phase[3] medium_phase(vec3 uvw)
+{
+    phase p[3] = medium.phase;
+    if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
+        p = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+    }
+    return p;
+}
+
+// Coefficients of any mode; 0 outside. One fetch (DENSITY) or one per coefficient that is used.
 medium_point medium_sample(vec3 p)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
@@ -77,7 +87,7 @@ medium_point medium_sample(vec3 p)
     if (medium_inside(uvw)) {
         m.sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
         m.sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
-        m.phase = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+        m.phase = medium_phase(uvw);
         m.emission = textureLod(emission_tex, uvw, 0.0).rgb;
     }
     return m;

@@ -20,7 +20,7 @@ mat3 medium_value(vec3 uvw)
 {
     vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
     vec3 sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
-    phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+    phase p[3] = medium_phase(uvw);
     similarity_clamp(sigma_s, p);
     return mat3(sigma_s, sigma_a, sigma_s * (1.0 - delta_fraction(p)));
 }

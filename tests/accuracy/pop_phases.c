@@ -155,7 +155,46 @@ static void same_lobe(void **state)
     assert_true(worst < 1e-5);
 }
 
-// Methods that know lobes alone, and media of unequal coefficients, take the lobe of the mean cosine.
+// Media of unequal coefficients that share a table: two boxes in one place are one box of the sum.
+static void two_of_one_phase(void **state)
+{
+    static const char *const names[LIT_COUNT] = {"sun", "lamp", "six lamps", "map"};
+    path_run *r = *state;
+    double worst = 0;
+    for (int i = 0; i < LIT_COUNT + 1; i++) {
+        const char *method = i < LIT_COUNT ? "pop" : "single";
+        const lit_by lit = (lit_by)(i % LIT_COUNT);
+        tyn_scene scene;
+        tyn_view view = {0};
+        picture with[2];
+        make_cube(&scene, &view);
+        light(&scene, lit);
+        const tyn_phase phase = phases_add(&scene, PHASES_RAYLEIGH);
+        const tyn_medium whole = scene.media[0];
+        for (int parts = 1; parts <= 2; parts++) {
+            if (parts == 2) {
+                const tyn_medium other = grey_medium(1, 0, 0);
+                scene_add_box(&scene, &other, (float[]){0, 0, 0}, (float[]){1, 1, 1},
+                              (uint32_t[]){1, 1, 1}, NULL);
+            }
+            for (int c = 0; c < 3; c++) {
+                scene.media[0].sigma_s[c] = whole.sigma_s[c] - (parts == 2 ? (float)c + 1 : 0);
+                scene.media[parts - 1].sigma_s[c] = parts == 2 ? (float)c + 1 : whole.sigma_s[c];
+            }
+            take(&scene, phase);
+            picture_render(&with[parts - 1], r->dev, method, &scene, &view, NULL, 0);
+        }
+        const picture_error e = picture_compare(&with[1], &with[0], 1);
+        printf("two media of one table, %s, %s: rel_l1 %.2g\n", method, names[lit], e.rel_l1);
+        worst = maximum(worst, e.rel_l1);
+        picture_free(&with[0]);
+        picture_free(&with[1]);
+        tyn_scene_finish(&scene);
+    }
+    assert_within(worst, 0.003, "two media are resampled, one is not");
+}
+
+// Methods that know lobes alone, and media of different phase functions, take the lobe of the mean cosine.
 static void lobe_instead(void **state)
 {
     path_run *r = *state;
@@ -176,6 +215,8 @@ static void lobe_instead(void **state)
         }
         for (int table = 0; table < 2; table++) {
             take(&scene, table ? phase : (tyn_phase){.g = phase.g});
+            scene.media[scene.num_media - 1].phase[2] =
+                i > 0 ? (tyn_phase){.g = 0.2f} : scene.media[0].phase[2];
             picture_render(&with[table], r->dev, method, &scene, &view, NULL, 0);
         }
         assert_true(picture_compare(&with[1], &with[0], 1).rel_l1 == 0);
@@ -216,8 +257,9 @@ static void first_scattering(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_lobe), cmocka_unit_test(lobe_instead),
-                                       cmocka_unit_test(pictures),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_lobe),
+                                       cmocka_unit_test(two_of_one_phase),
+                                       cmocka_unit_test(lobe_instead), cmocka_unit_test(pictures),
                                        cmocka_unit_test(first_scattering)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));

@@ -106,7 +106,7 @@ TYN_API void tyn_limit_say(const tyn_limit *limit, const tyn_limit_text *text, c
 // warning.
 typedef enum tyn_known_phases {
     TYN_PHASES_LOBES = 0,
-    TYN_PHASES_OF_ONE_MEDIUM, // tables, where all shapes have the same coefficients
+    TYN_PHASES_ONE, // tables, where all media have the same one
     TYN_PHASES_ALL,
 } tyn_known_phases;
 

@@ -64,7 +64,7 @@ sample_point sample_point_of(MATTER m, vec3 uvw)
     s.emission = medium.emission * m;
 #else
     s.scattering = max(textureLod(density_tex, uvw, 0.0).rgb, 0.0);
-    s.phase = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+    s.phase = medium_phase(uvw);
     s.emission = vec3(0.0);
     if (constellation_has(CONSTELLATION_EMISSION)) {
         s.emission = textureLod(emission_tex, uvw, 0.0).rgb;

@@ -8,7 +8,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_voxel_distance_params *p = params;
     tyn_extent size = tyn_build_extent(b, VOXEL_DISTANCE_PORT_DENSITY);
-    if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+    if (p->mode != TYN_MEDIUM_DENSITY) {
         tyn_build_format(b, VOXEL_DISTANCE_PORT_VOXELS, VK_FORMAT_R32G32B32A32_SFLOAT);
     }
     tyn_build_image(b, VOXEL_DISTANCE_PORT_VOXELS, size, 1);
@@ -21,7 +21,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_voxel_distance_params *p = params;
-    const bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
+    const bool coefficients = p->mode != TYN_MEDIUM_DENSITY;
     const tyn_extent size = tyn_rec_extent(r, VOXEL_DISTANCE_PORT_DENSITY);
     const float unit = fminf(p->voxel[0], fminf(p->voxel[1], p->voxel[2]));
     const struct voxel_distance_args args = {

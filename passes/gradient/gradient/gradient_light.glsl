@@ -21,7 +21,7 @@ vec3 matter_at(vec3 uvw)
     if (medium_mode != TYN_MEDIUM_DENSITY) {
         vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
         if (gradient_has(GRADIENT_MULTIPLE)) {
-            sigma_s = delta_scaled(sigma_s, phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb));
+            sigma_s = delta_scaled(sigma_s, medium_phase(uvw));
         }
         m = sigma_s + textureLod(sigma_a_tex, uvw, 0.0).rgb;
     }
@@ -173,7 +173,7 @@ vec3 light_at(vec3 p, float nearest)
     vec3 weight = vec3(1.0);
     phase phases[3] = medium.phase;
     if (medium_mode != TYN_MEDIUM_DENSITY) {
-        phases = phase_of_mean_cosine(textureLod(g_tex, p / medium.extent, 0.0).rgb);
+        phases = medium_phase(p / medium.extent);
     }
     similarity_clamp(weight, phases);
     if (gradient_has(GRADIENT_MULTIPLE)) {

@@ -95,7 +95,7 @@ bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3]
         [COLUMNS_AVERAGE_PORT_G] = medium->g,
     };
     tyn_graph_add(g, &tyn_pass_columns_average, &params, refs);
-    medium->density = m->mode == TYN_MEDIUM_COEFFICIENTS ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
+    medium->density = m->mode != TYN_MEDIUM_DENSITY ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
                                                          : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
     medium->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
     medium->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];

@@ -21,7 +21,7 @@ void tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     params.mode = block->mode;
     params.direct = job->frame->direct;
     params.emissive = job->frame->emissive;
-    params.colors = job->refs.colors.resource != 0 && block->mode == TYN_MEDIUM_COEFFICIENTS;
+    params.colors = job->refs.colors.resource != 0 && block->mode != TYN_MEDIUM_DENSITY;
     memcpy(params.size, block->size, sizeof params.size);
     memcpy(params.bricks, block->bricks, sizeof params.bricks);
 

@@ -45,7 +45,7 @@ void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     tyn_env_glow_params params;
     tyn_settings_params(job->settings, &tyn_pass_env_glow, &params);
     for (int c = 0; c < 3; c++) {
-        params.phase[c] = m->mode == TYN_MEDIUM_DENSITY ? m->phase[c] : narrowest;
+        params.phase[c] = m->mode == TYN_MEDIUM_COEFFICIENTS ? narrowest : m->phase[c];
     }
     params.tables = job->frame->phase_tables;
     tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = in->sources->sky.map};

@@ -151,7 +151,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     if (p->keep_light) {
         tyn_build_image(b, PORT(LIGHT), tiled, 1);
     }
-    if (small.x && p->mode == TYN_MEDIUM_COEFFICIENTS) {
+    if (small.x && p->mode != TYN_MEDIUM_DENSITY) {
         tyn_build_format(b, PORT(SMALL), VK_FORMAT_R32G32B32A32_SFLOAT); // before the image is made
         tyn_build_image(b, PORT(SMALL_SIGMA_A), small, 1);
         tyn_build_image(b, PORT(SMALL_G), small, 1);
@@ -187,7 +187,7 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     const uint32_t start[] = {(uint32_t)p->init, shadowed(p), stretched};
     const uint32_t step[] = {shadowed(p), stretched, p->threshold > 0};
     tyn_extent all = {args->cells, args->cells, layers * stacks};
-    uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
+    uint32_t shrunk = !small_of(p).x ? 0 : p->mode != TYN_MEDIUM_DENSITY ? 3 : 1;
 
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS,
                  .cells = {args->cells, args->cells, layers * args->count}, .args = args,
