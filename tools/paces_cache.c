@@ -1,4 +1,5 @@
 // paces_cache.c -- how fast a device is, measured once a day.
+#include "bench/library.h"
 #include "cache.h"
 #include "paces.h"
 #include "stats.h"
@@ -32,7 +33,7 @@ static char *path_of(tyn_device *device)
 {
     const char *const texts[] = {tyn_device_name(device), tyn_device_driver(device),
                                  tyn_version_string()};
-    uint64_t hash = processor_hash(0);
+    uint64_t hash = processor_hash(library_hash());
     for (size_t i = 0; i < ARRAY_SIZE(texts); i++) {
         hash = text_hash(texts[i], strlen(texts[i]), hash);
     }
@@ -40,6 +41,11 @@ static char *path_of(tyn_device *device)
     char *path = name ? cache_path(name) : NULL;
     free(name);
     return path;
+}
+
+static bool all_known(const paces *p)
+{
+    return p->solve_ms > 0 && p->pixel_ns > 0 && p->sample_ns > 0;
 }
 
 static bool load(const char *path, paces *p)
@@ -55,7 +61,7 @@ static bool load(const char *path, paces *p)
     free(data);
     *p = paces_read(json);
     cJSON_Delete(json);
-    return p->solve_ms > 0;
+    return all_known(p);
 }
 
 int paces_known(app *a, tyn_device *device, paces *p)
@@ -65,7 +71,12 @@ int paces_known(app *a, tyn_device *device, paces *p)
     if (!load(path, p)) {
         app_note(a, "measuring how fast this device is, once a day");
         code = paces_measure(a, device, p);
-        cJSON *json = code == EXIT_DONE && path ? paces_json(p) : NULL;
+        const bool known = code == EXIT_DONE && all_known(p);
+        if (code == EXIT_DONE && !known) {
+            app_warn(a, "the device was too busy to be timed: times of kernels that were not are "
+                        "foretold as of the machine of the stored figures");
+        }
+        cJSON *json = known && path ? paces_json(p) : NULL;
         char *text = json ? cJSON_Print(json) : NULL;
         if (text) { // without it they are measured again, and nothing else is lost
             tyn_file_write(path, text, strlen(text), NULL);
