@@ -5,6 +5,9 @@
 #include "passes/lattice_lamps_tables.h"
 #include <math.h>
 
+_Static_assert(TYN_RADIAL_VPLS_MAX <= 32 * LATTICE_VPL_SLICES,
+               "lattice_lamps_vpls.comp has a bit for each light of a slice");
+
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)
 {
     return p->num_fine + (p->num_lamps > p->num_fine) + p->vpls;
