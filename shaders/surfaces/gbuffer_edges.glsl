@@ -16,7 +16,7 @@ uvec2 gbuffer_edge_groups(uint n, uint row)
     return uvec2(min(group + 1u, row), group / row + 1u);
 }
 
-// Declares n, the place of one more element of a list that `counted` (a gbuffer_edge_count in a buffer) is of, and sees to it
+// Declares the variable n, the place of one more element of a list that `counted` (a gbuffer_edge_count in a buffer) is of, and sees to it
 // that the list's dispatch has `threads` for every `many` elements. GBUFFER_EDGES is a multiple of `threads`.
 #define GBUFFER_ADD(n, counted, threads, many, row)                                    \
     uint n = atomicAdd(counted.count, 1u);                                             \
