@@ -112,7 +112,6 @@ static bool equal_coefficients(const tyn_medium *a, const tyn_medium *b)
     for (int c = 0; c < 3; c++) {
         equal &= a->sigma_s[c] * tyn_medium_scale(a) == b->sigma_s[c] * tyn_medium_scale(b) &&
                  a->sigma_a[c] * tyn_medium_scale(a) == b->sigma_a[c] * tyn_medium_scale(b) &&
-                 tyn_phase_equal(a->phase[c], b->phase[c]) &&
                  a->emission[c] * tyn_medium_scale(a) == b->emission[c] * tyn_medium_scale(b);
     }
     return equal;
@@ -123,21 +122,32 @@ static bool has_colors(const tyn_medium *m)
     return m->emission_grid || m->radiance_grid || m->albedo_grid;
 }
 
-// Do all media that scatter light of a channel share one phase function, as `out` then tells?
+// Does a medium scatter light of a channel?
+static bool scatters(const tyn_scene *scene, const tyn_medium *m, int channel)
+{
+    const bool hollow = m->volume >= 0 && scene->volumes[m->volume].max_density <= 0;
+    float strength = m->sigma_s[channel];
+    if (m->albedo_grid) {
+        const bool black = !tyn_colors_place(scene, m->albedo_grid).size[0];
+        strength = black ? 0 : strength + m->sigma_a[channel];
+    }
+    return !hollow && strength * tyn_medium_scale(m) > 0;
+}
+
+// Do all media that scatter light of a channel share one phase function? `out` tells it.
 static bool have_one_phase(const tyn_scene *scene, tyn_phase out[3])
 {
     bool one = true;
     for (int c = 0; c < 3; c++) {
-        out[c] = scene->media[scene->shapes[0].medium].phase[c];
-        bool found = false;
+        const tyn_phase *first = NULL;
         for (uint32_t i = 0; i < scene->num_shapes; i++) {
             const tyn_medium *m = &scene->media[scene->shapes[i].medium];
-            if (m->sigma_s[c] > 0 || m->albedo_grid) {
-                one = one && (!found || tyn_phase_equal(out[c], m->phase[c]));
-                out[c] = m->phase[c];
-                found = true;
+            if (scatters(scene, m, c)) {
+                one = one && (!first || tyn_phase_equal(*first, m->phase[c]));
+                first = &m->phase[c];
             }
         }
+        out[c] = first ? *first : scene->media[scene->shapes[0].medium].phase[c];
     }
     return one;
 }
@@ -171,15 +181,15 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
 {
     struct medium_block *b = &out->medium;
     const tyn_medium *first = &scene->media[scene->shapes[0].medium];
-    bool equal = true;
+    tyn_phase phase[3];
+    const bool one_phase = have_one_phase(scene, phase);
+    bool equal = one_phase;
     float max_sum = 0;
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
         equal &= equal_coefficients(first, m) && !has_colors(m);
         max_sum += m->volume < 0 ? 1.0f : scene->volumes[m->volume].max_density;
     }
-    tyn_phase phase[3];
-    const bool one_phase = have_one_phase(scene, phase);
     b->mode = equal       ? TYN_MEDIUM_DENSITY
               : one_phase ? TYN_MEDIUM_ONE_PHASE
                           : TYN_MEDIUM_COEFFICIENTS;

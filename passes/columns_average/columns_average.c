@@ -25,7 +25,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     if (p->mode != TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, size, 1);
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, size, 1);
-        tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_G, size, 1);
+        if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+            tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_G, size, 1);
+        }
     } else {
         tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_DENSITY, size, 1);
     }
@@ -37,8 +39,7 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_columns_average_params *p = params;
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_AVERAGE_PORT_DENSITY);
     const uint32_t fine[3] = {texels.x, texels.y, texels.z};
-    struct columns_average_args args = {.size = {p->size[0], p->size[1], p->size[2]},
-                                        .one_phase = p->mode == TYN_MEDIUM_ONE_PHASE};
+    struct columns_average_args args = {.size = {p->size[0], p->size[1], p->size[2]}};
     double fetches = 1;
     for (int a = 0; a < 3; a++) {
         // One trilinear sample for two voxels along an axis.
@@ -47,9 +48,17 @@ static void record(tyn_recorder *r, const void *params)
         fetches *= (double)args.samples[a] * p->size[a];
     }
     bool coefficients = p->mode != TYN_MEDIUM_DENSITY;
-    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
-                 .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
-    tyn_rec_work(r, "fetches", fetches * (coefficients ? 3 : 1));
+    // An image that is not written to may be any.
+    static const uint8_t absent[][2] = {
+        {COLUMNS_AVERAGE_PORT_MEAN_G, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A}};
+    const uint32_t kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY;
+    uint8_t bindings[TYN_MAX_BINDINGS];
+    tyn_ports_exchanged(&kernels[kernel], absent, p->mode == TYN_MEDIUM_ONE_PHASE, bindings);
+    TYN_DISPATCH(r, .kernel = kernel, .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args,
+                 .ports = bindings, .spec = &p->mode);
+    tyn_rec_work(r, "fetches",
+                 fetches *
+                     (1 + (p->mode != TYN_MEDIUM_DENSITY) + (p->mode == TYN_MEDIUM_COEFFICIENTS)));
 }
 
 const tyn_pass_desc tyn_pass_columns_average = {

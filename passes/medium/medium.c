@@ -28,7 +28,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
         tyn_build_format(b, MEDIUM_PORT_DENSITY, VK_FORMAT_R32G32B32A32_SFLOAT);
         tyn_build_image(b, MEDIUM_PORT_DENSITY, size, 1);
         tyn_build_image(b, MEDIUM_PORT_SIGMA_A, size, 1);
-        tyn_build_image(b, MEDIUM_PORT_G, size, 1);
+        if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+            tyn_build_image(b, MEDIUM_PORT_G, size, 1);
+        }
         if (p->emissive) {
             tyn_build_image(b, MEDIUM_PORT_EMISSION, size, 1);
         }
@@ -50,8 +52,12 @@ static void record(tyn_recorder *r, const void *params)
     tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
     struct resample_args resample = {(uint32_t)p->samples};
     if (coefficients) {
-        TYN_DISPATCH(r, .kernel = colors ? KERNEL_COLORS : KERNEL_COEFFICIENTS, .cells = size,
-                     .args = &resample);
+        // An image that is not written to may be any.
+        static const uint8_t absent[][2] = {{MEDIUM_PORT_G, MEDIUM_PORT_SIGMA_A}};
+        const uint32_t kernel = colors ? KERNEL_COLORS : KERNEL_COEFFICIENTS;
+        uint8_t bindings[TYN_MAX_BINDINGS];
+        tyn_ports_exchanged(&kernels[kernel], absent, p->mode == TYN_MEDIUM_ONE_PHASE, bindings);
+        TYN_DISPATCH(r, .kernel = kernel, .cells = size, .args = &resample, .ports = bindings);
         if (p->emissive) {
             TYN_DISPATCH(r, .kernel = colors ? KERNEL_EMISSION_COLORS : KERNEL_EMISSION_PLAIN,
                          .cells = size, .args = &resample);
@@ -72,7 +78,9 @@ static void record(tyn_recorder *r, const void *params)
                      .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]});
     }
     double voxels = (double)size.x * size.y * size.z;
-    double written = coefficients ? (p->emissive ? 64 : 48) : p->direct ? 0 : 4;
+    double written = coefficients ? 32 + 16 * (p->emissive + (p->mode == TYN_MEDIUM_COEFFICIENTS))
+                     : p->direct  ? 0
+                                  : 4;
     tyn_rec_work(r, "cells", voxels);
     tyn_rec_work(r, "bytes", voxels * (4 + written)); // atlas, textures
 }

@@ -5,6 +5,7 @@
 #define ATLAS 2
 #define MEDIUM_GROUP 4
 #define COLORS 6
+#include "shaders/common/uniform_branch.glsl"
 #include "shaders/phase/phase.glsl"
 #include "medium_shapes.glsl"
 #include "medium_args.h"
@@ -51,11 +52,12 @@ void main()
         sigma_a += means[1];
         weighted += means[0] * phase_mean_cosine(shapes[i].phase);
     }
-    vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
-    float mean_s = mean_of(sigma_s);
-    float mean_g = mean_s > 0.0 ? mean_of(weighted) / mean_s : 0.0;
-    imageStore(density_image, ivec3(voxel), vec4(sigma_s, mean_s));
+    imageStore(density_image, ivec3(voxel), vec4(sigma_s, mean_of(sigma_s)));
     imageStore(sigma_a_image, ivec3(voxel), vec4(sigma_a, mean_of(sigma_a)));
-    imageStore(g_image, ivec3(voxel), vec4(g, mean_g));
+    if (uniform_branch(medium.mode == TYN_MEDIUM_COEFFICIENTS)) {
+        vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
+        float mean_s = mean_of(sigma_s);
+        imageStore(g_image, ivec3(voxel), vec4(g, mean_s > 0.0 ? mean_of(weighted) / mean_s : 0.0));
+    }
 #endif
 }

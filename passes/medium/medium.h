@@ -10,8 +10,8 @@
 typedef struct tyn_medium_params {
     uint32_t mode;      // TYN_MEDIUM_*
     uint32_t direct;    // 1: the atlas itself is the density texture, only bricks are made
-    uint32_t emissive;  // 1: `emission` exists in mode COEFFICIENTS
-    uint32_t colors;    // 1: `colors` is there; then the mode is that
+    uint32_t emissive;  // 1: `emission` exists, of unequal media
+    uint32_t colors;    // 1: `colors` is there; then media are unequal
     uint32_t size[3];   // medium_block.size
     uint32_t bricks[3]; // medium_block.bricks
     int32_t samples;    // along each axis of a voxel at the edge of a shape, 1..8
@@ -22,7 +22,7 @@ typedef struct tyn_medium_params {
 #define MEDIUM_PORTS(X) \
     X(MEDIUM, ATLAS, atlas, IN, IMAGE_3D, "density grids of all media"), \
     X(MEDIUM, SHAPES, shapes, IN, BUFFER, "struct shape_block[]"), \
-    X(MEDIUM, COLORS, colors, OPTIONAL, IMAGE_3D, "grids of colours of all media; with it mode is COEFFICIENTS"), \
+    X(MEDIUM, COLORS, colors, OPTIONAL, IMAGE_3D, "grids of colours of all media, which count as unequal"), \
     X(MEDIUM, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(MEDIUM, DENSITY, density, OUT, IMAGE_3D, \
         "mean density per voxel; or sigma_s, 1/m, a = mean of the channels", .format = VK_FORMAT_R32_SFLOAT), \
@@ -31,7 +31,7 @@ typedef struct tyn_medium_params {
     X(MEDIUM, EMISSION, emission, OUT, RGBA_3D, "emission, W/(m^3 sr)"), \
     X(MEDIUM, BRICKS, bricks, OUT, IMAGE_3D, \
         "least and largest value over the brick: texture values (DENSITY), sigma_t of the largest channel in " \
-        "1/m (COEFFICIENTS). Holds for the trilinear textures and for the exact shapes", \
+        "1/m (unequal media). Holds for the trilinear textures and for the exact shapes", \
         .format = VK_FORMAT_R32G32_SFLOAT), \
     X(MEDIUM, DISTANCE, distance, OUT, IMAGE_3D, \
         "Chebyshev distance in bricks to the nearest brick that is not empty, 0 = is not, at most 255", \

@@ -112,7 +112,7 @@ vec3 beam_fetch(sampler3D tex, const beam_place place)
     return depth;
 }
 
-// Either mode.
+// Any mode.
 beam_tau beam_depth_at(const beam_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {

@@ -59,7 +59,7 @@ float columns_density(uint n, uvec3 cell, uvec3 dims)
     return columns_value(columns_word(n, cell, dims), cell.x);
 }
 
-// Either mode.
+// Any mode.
 beam_tau columns_tau(uint n, uvec3 cell, uvec3 dims)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {

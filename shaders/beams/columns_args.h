@@ -14,8 +14,7 @@ struct columns_args {
 
 struct columns_average_args {
     tyn_uvec3 size;     // texels of the averaged medium
-    tyn_uvec3 samples;  // of the medium in each, along the axes
-    tyn_uint one_phase; // 1: mode ONE_PHASE
+    tyn_uvec3 samples; // of the medium in each, along the axes
 };
 
 #endif

@@ -130,7 +130,7 @@ float radial_column(const radial_place place)
     return place.inside * textureLod(radial_column_tex, place.uvw, 0.0).r;
 }
 
-// Either mode.
+// Any mode.
 beam_tau radial_tau(const radial_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {

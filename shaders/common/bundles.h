@@ -7,15 +7,15 @@
 
 // clang-format off
 
-// The medium (medium.glsl). sigma_a, g and emission exist in mode COEFFICIENTS only.
+// The medium (medium.glsl). sigma_a and emission exist of unequal media alone (all modes but DENSITY), g in mode COEFFICIENTS.
 #define TYN_MEDIUM(X, P) \
     X(P, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(P, DENSITY, density, IN, IMAGE_3D, "density, or sigma_s of unequal media, 1/m"), \
     X(P, SIGMA_A, sigma_a, OPTIONAL, IMAGE_3D, "of unequal media, 1/m"), \
-    X(P, G, g, OPTIONAL, IMAGE_3D, "mean cosine of unequal media"), \
+    X(P, G, g, OPTIONAL, IMAGE_3D, "mean cosine, where phase functions differ"), \
     X(P, EMISSION, emission, OPTIONAL, IMAGE_3D, "of unequal media, W/(m^3 sr)")
 
-// Optical depths along the suns (beam.glsl). tau_a and tau_p exist in mode COEFFICIENTS only.
+// Optical depths along the suns (beam.glsl). tau_a and tau_p exist of unequal media alone.
 #define TYN_BEAMS(X, P) \
     X(P, BEAMS, beams, IN, BUFFER, "struct beam_block[]"), \
     X(P, COLUMN, column, IN, IMAGE_3D, "density (or sigma_s) integrated along the suns"), \

@@ -1,7 +1,7 @@
 // medium_value.glsl -- what is integrated of a medium along a line: its density, or coefficients. Include after
 // medium.glsl.
 //
-// TYN_DENSITY is defined in the builds for mode DENSITY (passes/meson.build).
+// TYN_DENSITY is defined in the builds for mode DENSITY, not in those for the others (passes/meson.build).
 #ifndef TYN_MEDIUM_VALUE_GLSL
 #define TYN_MEDIUM_VALUE_GLSL
 

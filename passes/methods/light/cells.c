@@ -96,7 +96,7 @@ bool tyn_average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3]
     };
     tyn_graph_add(g, &tyn_pass_columns_average, &params, refs);
     medium->density = m->mode != TYN_MEDIUM_DENSITY ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
-                                                         : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
+                                                    : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
     medium->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
     medium->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];
     return true;
