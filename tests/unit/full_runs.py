@@ -22,6 +22,8 @@ FILES = {
     "passes/left_out/module.c": "int left_out;\n",
     "passes/left_out/method.c": "int left_out_method;\n",
     "passes/shared/module.c": "int shared;\n",
+    "tests/golden/a.exr": "picture",
+    "tests/golden/golden.c": "int golden;\n",
     "build/libtyndall-core.a.p/core.c.o": "core",
     "build/passes/libtyndall-a.a.p/module.c.o": "a",
     "build/passes/libtyndall-a.a.p/method.c.o": "a method",
@@ -79,12 +81,13 @@ def main():
         pass_tests(root, [["accuracy+full-b", "OK"]], start)
         assert kept(root) == ["full-a"], "b was changed while its tests ran"
         write(root, "build/passes/libtyndall-b.a.p/module.c.o", FILES["build/passes/libtyndall-b.a.p/module.c.o"])
-        # Sources count by their objects alone, tests and their options by their text.
+        # Sources count by their objects alone, tests and their options by their text, golden pictures by their bytes.
         for path, left in {
             "engine/include/tyndall/pass.h": ["full-a", "full-b"], "shaders/light/sky.glsl": ["full-a", "full-b"], "passes/a/method.c": ["full-a", "full-b"],
             "build/libtyndall-core.a.p/core.c.o": ["full-a", "full-b"], "build/passes/libtyndall-a.a.p/gone.c.o": ["full-a", "full-b"],
             "build/passes/libtyndall-a.a.p/method.c.o": ["full-b"], "build/passes/libtyndall-b.a.p/module.c.o": ["full-a"],
             "build/passes/libtyndall-shared.a.p/module.c.o": [], "passes/a/tests/accuracy/a.c": ["full-b"], "passes/b/meson.build": ["full-a"],
+            "tests/golden/a.exr": ["full-b"], "tests/golden/golden.c": [],
         }.items():
             write(root, path, FILES[path] + "int more;\n")
             assert kept(root) == left, f"{path}: {kept(root)} are kept"
