@@ -47,18 +47,17 @@ static void record(tyn_recorder *r, const void *params)
         args.samples[a] = (uint32_t)fmin(fmax(pairs, 1), 16);
         fetches *= (double)args.samples[a] * p->size[a];
     }
-    bool coefficients = p->mode != TYN_MEDIUM_DENSITY;
+    const bool coefficients = p->mode != TYN_MEDIUM_DENSITY,
+               varies = p->mode == TYN_MEDIUM_COEFFICIENTS;
     // An image that is not written to may be any.
     static const uint8_t absent[][2] = {
         {COLUMNS_AVERAGE_PORT_MEAN_G, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A}};
     const uint32_t kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY;
     uint8_t bindings[TYN_MAX_BINDINGS];
-    tyn_ports_exchanged(&kernels[kernel], absent, p->mode == TYN_MEDIUM_ONE_PHASE, bindings);
+    tyn_ports_exchanged(&kernels[kernel], absent, coefficients && !varies, bindings);
     TYN_DISPATCH(r, .kernel = kernel, .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args,
                  .ports = bindings, .spec = &p->mode);
-    tyn_rec_work(r, "fetches",
-                 fetches *
-                     (1 + (p->mode != TYN_MEDIUM_DENSITY) + (p->mode == TYN_MEDIUM_COEFFICIENTS)));
+    tyn_rec_work(r, "fetches", fetches * (coefficients ? 2 + varies : 1));
 }
 
 const tyn_pass_desc tyn_pass_columns_average = {

@@ -78,9 +78,10 @@ static void record(tyn_recorder *r, const void *params)
                      .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]});
     }
     double voxels = (double)size.x * size.y * size.z;
-    double written = coefficients ? 32 + 16 * (p->emissive + (p->mode == TYN_MEDIUM_COEFFICIENTS))
-                     : p->direct  ? 0
-                                  : 4;
+    double written = p->direct ? 0 : 4;
+    if (coefficients) {
+        written = 32 + 16 * (p->emissive + (p->mode == TYN_MEDIUM_COEFFICIENTS));
+    }
     tyn_rec_work(r, "cells", voxels);
     tyn_rec_work(r, "bytes", voxels * (4 + written)); // atlas, textures
 }

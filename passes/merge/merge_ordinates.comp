@@ -32,21 +32,19 @@ vec3 grey_share(uint n, uvec3 cell, const beam_tau unit, const tms_row row, floa
 
 vec3 coloured_share(uint n, uvec3 cell, const beam_tau unit, tms_row row[3], float mu, float level)
 {
-    float column = columns_density(n, cell, args.dims);
-    vec3 k = exp(-(unit.a + unit.p) * column);
-    for (int ch = 0; ch < 3; ch++) {
-        k[ch] *= tms_kernel(row[ch], mu, unit.s[ch] * column, level);
+    vec3 tau_s, tau; // tau': without what is scattered straight on
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        float column = columns_density(n, cell, args.dims);
+        tau_s = unit.s * column;
+        tau = (unit.a + unit.p) * column;
+    } else {
+        beam_tau depth = columns_tau(n, cell, args.dims);
+        tau_s = depth.s;
+        tau = depth.a + depth.p;
     }
-    return k;
-}
-
-// Of unequal media with one phase function.
-vec3 unequal_share(uint n, uvec3 cell, tms_row row[3], float mu, float level)
-{
-    beam_tau tau = columns_tau(n, cell, args.dims);
-    vec3 k = exp(-(tau.a + tau.p));
+    vec3 k = exp(-tau);
     for (int ch = 0; ch < 3; ch++) {
-        k[ch] *= tms_kernel(row[ch], mu, tau.s[ch], level);
+        k[ch] *= tms_kernel(row[ch], mu, tau_s[ch], level);
     }
     return k;
 }
@@ -90,8 +88,6 @@ void main()
         vec3 share;
         if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
             share = mixed_share(n, uvec3(c), last, mu, level, o.mean_cosine);
-        } else if (medium_mode == TYN_MEDIUM_ONE_PHASE) {
-            share = unequal_share(n, uvec3(c), row, mu, level);
         } else if (grey) {
             share = grey_share(n, uvec3(c), unit, row[0], mu, level);
         } else {
