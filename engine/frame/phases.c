@@ -38,9 +38,8 @@ static void warn(tyn_context *ctx, bool knows)
     tyn_context_warn(
         ctx,
         knows
-            ? "media of different phase functions: each counts as the Henyey-Greenstein lobe of "
-              "its "
-              "mean cosine; 'path' knows them"
+            ? "media of different phase functions: each counts as the Henyey-Greenstein lobe "
+              "of its mean cosine; 'path' knows them"
             : "phase functions that are not one Henyey-Greenstein lobe count as that of their mean "
               "cosine; 'path', 'pop' and 'single' know them");
 }

@@ -8,8 +8,7 @@
 #define TYN_NEED_REFUSED                                                                           \
     "a kernel that binds more than the device takes is refused when a scene needs it"
 #define TYN_NEED_LARGER "a scene that needs a larger one is refused in a line that names it"
-#define TYN_MOST_SIDE 16384 // of pictures, pixels
-
+#define TYN_MOST_SIDE 16384                                             // of pictures, pixels
 #define TYN_NEED_BY_KIND "262144 if such a card is discrete, else 8192" // capacity.c
 
 // What a row is for, and the fallback without it; NULL: none, the device cannot be used.

@@ -1,4 +1,4 @@
-// beam.comp -- the medium integrated along each sun; x, y: column, z: sun. Built for mode DENSITY and for the others (medium_value.glsl).
+// beam.comp -- the medium integrated along each sun; x, y: column, z: sun. Built twice (medium_value.glsl).
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"

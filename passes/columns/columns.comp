@@ -1,4 +1,4 @@
-// columns.comp -- the medium integrated along the columns; x: column, z: ordinate of the batch. Built for mode DENSITY and for the others
+// columns.comp -- the medium integrated along the columns; x: column, z: ordinate of the batch. Built twice
 // (medium_value.glsl).
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"

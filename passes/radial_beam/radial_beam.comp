@@ -1,4 +1,4 @@
-// radial_beam.comp -- the mean of the medium around local lights; a thread per direction. Built for mode DENSITY and for the others
+// radial_beam.comp -- the mean of the medium around local lights; a thread per direction. Built twice
 // (medium_value.glsl).
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"

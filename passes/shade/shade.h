@@ -30,9 +30,8 @@ typedef struct tyn_shade_params {
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
     uint32_t samples;  // of the G-buffer, along each side of a pixel
-    uint32_t
-        parted; // as tyn_raymarch_params.parted, of pixels and of those that are listed; else SHADE_SLICED
-    uint32_t sky_fan; // directions of an ordinate
+    uint32_t parted;   // 1: a kernel for pixels, one for listed ones; 0: one, and SHADE_SLICED
+    uint32_t sky_fan;  // directions of an ordinate
     uint32_t sky_cells
         [3]; // that have columns along ordinates (tyn_lattice_dims); 0: nothing dims their light
     uint32_t

@@ -13,7 +13,7 @@ struct columns_args {
 };
 
 struct columns_average_args {
-    tyn_uvec3 size;     // texels of the averaged medium
+    tyn_uvec3 size;    // texels of the averaged medium
     tyn_uvec3 samples; // of the medium in each, along the axes
 };
 

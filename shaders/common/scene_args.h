@@ -13,7 +13,7 @@
 #define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
 // Textures sigma_s, sigma_a, g, emission (media of unequal coefficients).
 #define TYN_MEDIUM_COEFFICIENTS 1
-#define TYN_MEDIUM_ONE_PHASE 2 // the same textures, but the phase function is everywhere the block's
+#define TYN_MEDIUM_ONE_PHASE 2 // as COEFFICIENTS, without g: the block has the phase function
 
 #define TYN_SHAPE_KIND_BOX 0
 #define TYN_SHAPE_KIND_SPHERE 1

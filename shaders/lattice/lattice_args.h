@@ -89,8 +89,8 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_FEW 2048   // ... with 16 KiB of shared memory: exactly as much
 #define LATTICE_COARSE_GROUP 256
-#define LATTICE_VPL_SLICES                                                                         \
-    8 // threads that share the VPLs of a block: at most 32 each, and a thread for each channel
+// Threads that share the VPLs of a block: at most 32 VPLs each, and a thread for each channel.
+#define LATTICE_VPL_SLICES 8
 #define LATTICE_SUN_GROUP 256
 #define LATTICE_DEPTH_GROUP 256
 #define LATTICE_MAX_LAUNCHES 64 // of a cycle

@@ -16,8 +16,8 @@ uvec2 gbuffer_edge_groups(uint n, uint row)
     return uvec2(min(group + 1u, row), group / row + 1u);
 }
 
-// Declares the variable n, the place of one more element of a list that `counted` (a gbuffer_edge_count in a buffer) is of, and sees to it
-// that the list's dispatch has `threads` for every `many` elements. GBUFFER_EDGES is a multiple of `threads`.
+// Adds an element to a list, and declares the variable n, its place. `counted`: the list's gbuffer_edge_count, in a buffer.
+// The list's dispatch gets `threads` for every `many` elements. GBUFFER_EDGES is a multiple of `threads`.
 #define GBUFFER_ADD(n, counted, threads, many, row)                                    \
     uint n = atomicAdd(counted.count, 1u);                                             \
     if (n * (threads) / (many) % GBUFFER_EDGES == 0u) { /* the first of a workgroup */ \

@@ -30,8 +30,7 @@ uvec2 piece_light_half(const piece_light p)
 {
     uvec3 bits = floatBitsToUint(p.radiance) & 0x7fffffffu;
     uint exponent = max(max(bits.r, max(bits.g, bits.b)) >> 23, 20u);
-    float scale =
-        uintBitsToFloat((265u - exponent) << 23); // the largest one times this is below 2^12
+    float scale = uintBitsToFloat((265u - exponent) << 23); // times the largest: below 2^12
     uvec3 c = uvec3(max(min(vec3(4095.0), p.radiance * scale + 0.5), vec3(0.0)));
     return uvec2((floatBitsToUint(p.distance) + 0x400u) >> 11 | c.r << 20,
                  c.g | c.b << 12 | exponent << 24);

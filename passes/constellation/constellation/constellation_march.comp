@@ -1,4 +1,4 @@
-// constellation_march.comp -- slices back to front, a thread a pixel. Built for mode DENSITY of the medium and for the others.
+// constellation_march.comp -- slices back to front, a thread a pixel. Built for mode DENSITY and for the others.
 //
 //   L <- e^-x L + W sigma_s (sum over lights of E T p) (1 - e^-x) / sigma_t,  x = sigma_t times the slice's thickness
 //

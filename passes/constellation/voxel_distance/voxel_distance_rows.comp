@@ -1,5 +1,5 @@
 // voxel_distance_rows.comp -- squared distance to the nearest voxel of the row that is not empty; a thread per row along x.
-// Built for mode DENSITY of the medium and for the others.
+// Built for mode DENSITY and for the others.
 #include "voxel_distance_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,5 +1,5 @@
 // propagate_rect_shrink.comp -- the medium at a resolution that suits the cells of many grids: a box filter over its
-// voxels. Built for mode DENSITY and for the others: TYN_DENSITY is defined for mode DENSITY.
+// voxels. Built twice: TYN_DENSITY is defined for mode DENSITY.
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 
